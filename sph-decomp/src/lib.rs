@@ -1,0 +1,1 @@
+//! Domain decomposition for particles: partition, migration, piecewise overlap zone, overlapped halo exchange

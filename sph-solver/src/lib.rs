@@ -1,0 +1,1 @@
+//! Smoothed particle hydrodynamics: scenes, schemes, time integration and the sph program

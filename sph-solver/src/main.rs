@@ -1,0 +1,2 @@
+//! The `sph` program.
+fn main() {}
