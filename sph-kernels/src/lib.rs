@@ -6,6 +6,8 @@ mod kernel;
 mod lanes;
 mod real;
 
-pub use kernel::{Kernel, WendlandC2};
+pub use kernel::{
+    CubicSpline, Gaussian, Kernel, QuinticSpline, WendlandC2, WendlandC4, WendlandC6,
+};
 pub use lanes::{Lanes, Vectorized, simd_level};
 pub use real::Real;
