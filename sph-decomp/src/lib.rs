@@ -1,1 +1,21 @@
-//! Domain decomposition for particles: partition, migration, piecewise overlap zone, overlapped halo exchange
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+
+mod columns;
+mod comm;
+mod halo;
+mod migrate;
+mod partition;
+mod parts;
+mod zone;
+
+pub use columns::{ColumnError, Columns};
+pub use comm::{
+    CommError, Communicator, Exposed, Part, Progress, RanksError, Solo, ThreadRank, ThreadRanks,
+    Traffic, check_same_build,
+};
+pub use halo::{Halo, HaloPlan, PlanError};
+pub use migrate::{MigrateError, MigrationReport, migrate};
+pub use partition::{HilbertCurve, Imbalance, Orb, Partition, PartitionError, Rebalance};
+pub use parts::Parts;
+pub use zone::{MaxReach, MeanReach, PairReach, Reach, Zone, ZoneError, ZoneOptions};

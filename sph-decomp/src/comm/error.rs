@@ -1,0 +1,82 @@
+//! What can go wrong between ranks.
+
+/// An error of a communicator.
+///
+/// Every operation is collective, so an error on one rank leaves the others waiting. Under
+/// [`ThreadRanks`](crate::ThreadRanks) the error of one rank wakes all others; under MPI the
+/// program ends the job with `Mpi::abort`, or runs inside `Mpi::run`, which does so.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CommError {
+    /// Another rank failed, and this one stopped waiting for it.
+    #[error("rank {rank} failed: {message}")]
+    RankFailed {
+        /// The rank that failed first.
+        rank: usize,
+        /// What it said.
+        message: String,
+    },
+    /// The ranks are not in the same operation.
+    #[error(
+        "rank {rank} sent a message of its operation number {got}, but this rank is at its number \
+         {expected}: all ranks must call the same collective operations in the same order"
+    )]
+    OutOfStep {
+        /// The sender.
+        rank: usize,
+        /// The number of the sender's operation.
+        got: u64,
+        /// The number of the operation of this rank.
+        expected: u64,
+    },
+    /// A message is longer or shorter than the receiver was told.
+    #[error(
+        "rank {rank} sent {got} bytes where {expected} were expected: sender and receiver hold \
+         different plans (was a plan restricted with different rules on the two sides?)"
+    )]
+    WrongLength {
+        /// The sender.
+        rank: usize,
+        /// Bytes that came.
+        got: usize,
+        /// Bytes the receiver expected.
+        expected: usize,
+    },
+    /// A message is addressed to a rank that does not exist.
+    #[error("a message is addressed to rank {rank}, but there are only {size} ranks")]
+    NoSuchRank {
+        /// The address.
+        rank: usize,
+        /// Number of ranks.
+        size: usize,
+    },
+    /// The parts of a buffer overlap, are out of order or reach past its end.
+    #[error(
+        "part {start}..{end} of a buffer of {length} bytes overlaps the part before it or reaches \
+         past the end: parts must be ascending, disjoint and inside the buffer"
+    )]
+    BadPart {
+        /// First byte.
+        start: usize,
+        /// One past the last byte.
+        end: usize,
+        /// Length of the buffer.
+        length: usize,
+    },
+    /// The ranks were not started from the same program.
+    #[error(
+        "rank {rank} runs a different build: it says `{theirs}`, most ranks say `{expected}`; start \
+         the same program with the same settings on all machines"
+    )]
+    DifferentBuild {
+        /// The first rank that differs from the majority.
+        rank: usize,
+        /// Its tag.
+        theirs: String,
+        /// The tag of the majority.
+        expected: String,
+    },
+    /// The MPI library cannot be used.
+    #[error("MPI cannot be used: {0}")]
+    Mpi(String),
+}

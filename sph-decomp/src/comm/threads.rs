@@ -1,0 +1,365 @@
+//! Ranks as threads of one process.
+
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::fmt::Display;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::thread;
+use std::time::Instant;
+
+use super::mailbox::{Message, PostOffice};
+use super::order::max_ordered;
+use super::{CommError, Communicator, Exposed, Progress, Traffic, words};
+
+/// Runs a program on several ranks that are threads of this process: the embedded way to use and
+/// to test a decomposition, without MPI.
+#[derive(Debug)]
+pub struct ThreadRanks;
+
+/// Why [`ThreadRanks::run`] failed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum RanksError<E> {
+    /// A run needs at least one rank.
+    #[error("a run needs at least one rank")]
+    NoRanks,
+    /// The system refused to start a thread.
+    #[error("the thread of rank {rank} could not be started: {message}")]
+    Spawn {
+        /// The rank without a thread.
+        rank: usize,
+        /// What the system said.
+        message: String,
+    },
+    /// A rank returned an error. Ranks that stopped only because of it are not named.
+    #[error("rank {rank}: {error}")]
+    Failed {
+        /// The first rank that failed.
+        rank: usize,
+        /// Its error.
+        error: E,
+    },
+    /// A rank panicked.
+    #[error("rank {rank} panicked: {message}")]
+    Panicked {
+        /// The first rank that panicked.
+        rank: usize,
+        /// The text of the panic.
+        message: String,
+    },
+}
+
+impl ThreadRanks {
+    /// Runs `work` on `ranks` ranks and returns their results in rank order.
+    ///
+    /// When a rank returns an error or panics, all others that wait for a message get
+    /// [`CommError::RankFailed`], and the caller gets the first error in time.
+    ///
+    /// ```
+    /// use sph_decomp::{CommError, Communicator, ThreadRanks};
+    ///
+    /// let sums = ThreadRanks::run(4, |comm| {
+    ///     let mut sum = [comm.rank() as u64];
+    ///     comm.sum_u64(&mut sum)?;
+    ///     Ok::<_, CommError>(sum[0])
+    /// });
+    /// assert_eq!(sums, Ok(vec![6; 4]));
+    /// ```
+    pub fn run<R, E, F>(ranks: usize, work: F) -> Result<Vec<R>, RanksError<E>>
+    where
+        R: Send,
+        E: Display + Send,
+        F: Fn(ThreadRank) -> Result<R, E> + Sync,
+    {
+        if ranks == 0 {
+            return Err(RanksError::NoRanks);
+        }
+        let office = Arc::new(PostOffice::new(ranks));
+        let (office, work) = (&office, &work);
+        let mut outcomes: Vec<Outcome<R, E>> = thread::scope(|scope| {
+            let start = |rank: usize| {
+                let thread = thread::Builder::new().name(format!("rank {rank}"));
+                let started = thread.spawn_scoped(scope, move || run_rank(rank, office, work));
+                if let Err(error) = &started {
+                    office.fail(rank, format!("its thread could not be started: {error}"));
+                }
+                started
+            };
+            let threads: Vec<_> = (0..ranks).map(start).collect();
+            let join = |thread: std::io::Result<thread::ScopedJoinHandle<'_, _>>| match thread {
+                Ok(thread) => thread.join().unwrap_or(Outcome::Panicked),
+                Err(error) => Outcome::NotStarted(error.to_string()),
+            };
+            threads.into_iter().map(join).collect()
+        });
+        let Some((rank, message)) = office.failure() else {
+            let result = |outcome| match outcome {
+                Outcome::Done(result) => Some(result),
+                _ => None,
+            };
+            return Ok(outcomes.into_iter().filter_map(result).collect());
+        };
+        Err(match outcomes.swap_remove(rank) {
+            Outcome::Failed(error) => RanksError::Failed { rank, error },
+            Outcome::NotStarted(message) => RanksError::Spawn { rank, message },
+            Outcome::Panicked | Outcome::Done(_) => RanksError::Panicked { rank, message },
+        })
+    }
+}
+
+/// How one rank ended.
+enum Outcome<R, E> {
+    Done(R),
+    Failed(E),
+    Panicked,
+    NotStarted(String),
+}
+
+fn run_rank<R, E: Display>(
+    rank: usize,
+    office: &Arc<PostOffice>,
+    work: &impl Fn(ThreadRank) -> Result<R, E>,
+) -> Outcome<R, E> {
+    let comm = ThreadRank {
+        rank,
+        office: Arc::clone(office),
+        operation: Cell::new(0),
+        spare: RefCell::default(),
+    };
+    // The closure is not used again after a panic, so no broken state can be seen.
+    match catch_unwind(AssertUnwindSafe(|| work(comm))) {
+        Ok(Ok(result)) => {
+            office.finish(rank);
+            Outcome::Done(result)
+        }
+        Ok(Err(error)) => {
+            office.fail(rank, error.to_string());
+            Outcome::Failed(error)
+        }
+        Err(panic) => {
+            office.fail(rank, say(&*panic));
+            Outcome::Panicked
+        }
+    }
+}
+
+/// The text of a panic.
+fn say(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(ToString::to_string);
+    text.or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "a panic without a message".to_string())
+}
+
+/// The communicator of one rank of [`ThreadRanks`].
+#[derive(Debug)]
+pub struct ThreadRank {
+    rank: usize,
+    office: Arc<PostOffice>,
+    /// Number of operations so far: every message carries it, so that ranks that are out of step
+    /// get an error instead of each other's data.
+    operation: Cell<u64>,
+    /// Buffers of messages that came, kept for messages that go.
+    spare: RefCell<Vec<Vec<u8>>>,
+}
+
+impl ThreadRank {
+    fn next_operation(&self) -> u64 {
+        self.operation.set(self.operation.get() + 1);
+        self.operation.get()
+    }
+
+    fn post(&self, to: usize, operation: u64, bytes: &[u8]) {
+        let mut copy = self.spare.borrow_mut().pop().unwrap_or_default();
+        copy.clear();
+        copy.extend_from_slice(bytes);
+        self.office.post(self.rank, to, Message { operation, bytes: copy });
+    }
+
+    fn take(&self, from: usize, operation: u64) -> Result<Vec<u8>, CommError> {
+        let message = self.office.take(self.rank, from)?;
+        Self::in_step(from, operation, message)
+    }
+
+    fn in_step(from: usize, operation: u64, message: Message) -> Result<Vec<u8>, CommError> {
+        let (got, expected) = (message.operation, operation);
+        if got != expected {
+            return Err(CommError::OutOfStep { rank: from, got, expected });
+        }
+        Ok(message.bytes)
+    }
+}
+
+impl Communicator for ThreadRank {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn size(&self) -> usize {
+        self.office.ranks()
+    }
+
+    fn exchange_some(
+        &self,
+        send: Vec<(usize, Vec<u8>)>,
+    ) -> Result<Vec<(usize, Vec<u8>)>, CommError> {
+        let size = self.size();
+        if let Some(&(rank, _)) = send.iter().find(|(rank, _)| *rank >= size) {
+            return Err(CommError::NoSuchRank { rank, size });
+        }
+        let operation = self.next_operation();
+        for (rank, bytes) in send {
+            if !bytes.is_empty() {
+                self.office.post(self.rank, rank, Message { operation, bytes });
+            }
+        }
+        // An empty message closes the letters of a rank.
+        for rank in 0..size {
+            self.post(rank, operation, &[]);
+        }
+        let mut received = Vec::new();
+        for rank in 0..size {
+            loop {
+                let bytes = self.take(rank, operation)?;
+                if bytes.is_empty() {
+                    break;
+                }
+                received.push((rank, bytes));
+            }
+        }
+        Ok(received)
+    }
+
+    fn all_gather(&self, bytes: &[u8]) -> Result<Vec<Vec<u8>>, CommError> {
+        let operation = self.next_operation();
+        for rank in 0..self.size() {
+            self.post(rank, operation, bytes);
+        }
+        (0..self.size()).map(|rank| self.take(rank, operation)).collect()
+    }
+
+    fn overlap(
+        &self,
+        traffic: Traffic<'_>,
+        inner: &mut dyn FnMut(&mut [u8]),
+        local: &mut dyn FnMut(&mut dyn Progress),
+    ) -> Result<Exposed, CommError> {
+        traffic.check(self.size())?;
+        let operation = self.next_operation();
+        let others = || (0..self.size()).filter(|&rank| rank != self.rank);
+        let mut wanted = Vec::new();
+        if !traffic.maxima.is_empty() {
+            for rank in others() {
+                self.post(rank, operation, bytemuck::cast_slice(traffic.maxima));
+                wanted.push((rank, Want::Maxima));
+            }
+        }
+        inner(traffic.send);
+        for part in traffic.send_parts.iter().filter(|part| !part.bytes.is_empty()) {
+            self.post(part.rank, operation, &traffic.send[part.bytes.clone()]);
+        }
+        for part in traffic.receive_parts.iter().filter(|part| !part.bytes.is_empty()) {
+            wanted.push((part.rank, Want::Part(part.bytes.clone())));
+        }
+        let mut arrivals = Arrivals {
+            comm: self,
+            operation,
+            receive: traffic.receive,
+            maxima: traffic.maxima,
+            wanted,
+            polls: 0,
+            error: None,
+        };
+        local(&mut arrivals);
+        let blocked = Instant::now();
+        arrivals.wait()?;
+        let mut exposed = Exposed::counting(self.rank, traffic.send_parts);
+        exposed.wait_seconds = blocked.elapsed().as_secs_f64();
+        exposed.polls = arrivals.polls;
+        Ok(exposed)
+    }
+}
+
+/// What a message of an overlapped pass is for.
+enum Want {
+    Maxima,
+    Part(Range<usize>),
+}
+
+/// The messages that an overlapped pass still waits for.
+struct Arrivals<'a> {
+    comm: &'a ThreadRank,
+    operation: u64,
+    receive: &'a mut [u8],
+    maxima: &'a mut [f64],
+    /// In the order in which each sender writes.
+    wanted: Vec<(usize, Want)>,
+    polls: u32,
+    error: Option<CommError>,
+}
+
+impl Arrivals<'_> {
+    /// Puts a message in its place and keeps its buffer for a later message.
+    fn place(&mut self, rank: usize, want: &Want, bytes: Vec<u8>) -> Result<(), CommError> {
+        match want {
+            Want::Maxima => {
+                let theirs = words(rank, &bytes, self.maxima.len())?;
+                for (value, word) in self.maxima.iter_mut().zip(theirs) {
+                    *value = max_ordered(*value, f64::from_ne_bytes(word));
+                }
+            }
+            Want::Part(range) if range.len() == bytes.len() => {
+                self.receive[range.clone()].copy_from_slice(&bytes);
+            }
+            Want::Part(range) => {
+                let (got, expected) = (bytes.len(), range.len());
+                return Err(CommError::WrongLength { rank, got, expected });
+            }
+        }
+        self.comm.spare.borrow_mut().push(bytes);
+        Ok(())
+    }
+
+    fn take_what_is_there(&mut self) -> Result<(), CommError> {
+        let mut silent = vec![false; self.comm.size()];
+        let mut still = Vec::new();
+        for (rank, want) in std::mem::take(&mut self.wanted) {
+            let message = match silent[rank] {
+                true => None,
+                false => self.comm.office.try_take(self.comm.rank, rank),
+            };
+            match message {
+                Some(message) => {
+                    let bytes = ThreadRank::in_step(rank, self.operation, message)?;
+                    self.place(rank, &want, bytes)?;
+                }
+                None => {
+                    silent[rank] = true;
+                    still.push((rank, want));
+                }
+            }
+        }
+        self.wanted = still;
+        Ok(())
+    }
+
+    fn wait(&mut self) -> Result<(), CommError> {
+        if let Some(error) = self.error.take() {
+            return Err(error);
+        }
+        for (rank, want) in std::mem::take(&mut self.wanted) {
+            let bytes = self.comm.take(rank, self.operation)?;
+            self.place(rank, &want, bytes)?;
+        }
+        Ok(())
+    }
+}
+
+impl Progress for Arrivals<'_> {
+    fn poll(&mut self) {
+        self.polls += 1;
+        if self.error.is_none() && !self.wanted.is_empty() {
+            self.error = self.take_what_is_there().err();
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Weighted orthogonal recursive bisection.
+
+use super::splitters::{Keyed, Target, find};
+use super::weights::to_integers;
+use super::{Partition, PartitionError, check_positions};
+use crate::Communicator;
+use crate::zone::Aabb;
+
+/// Orthogonal recursive bisection: space is cut across its longest side so that the weights on
+/// the two sides are as the numbers of ranks there, and each side is cut again.
+///
+/// Built by all ranks together, level by level, with histograms of weights (as in Warren and
+/// Salmon, *A parallel hashed oct-tree N-body algorithm*, 1993, and Boman et al., *Zoltan*, 2012):
+/// no rank ever holds more than its own particles. Any number of ranks is possible, also more than
+/// particles. The partition does not depend on which rank holds which particle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Orb<const D: usize> {
+    /// The root comes first; without nodes there is one rank.
+    nodes: Vec<Node>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Node {
+    axis: usize,
+    /// Coordinates below the cut are on the low side.
+    cut: f64,
+    low: Child,
+    high: Child,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Child {
+    Node(u32),
+    Rank(u32),
+}
+
+/// A piece of space that is still to be divided among several ranks.
+#[derive(Debug, Clone, Copy)]
+struct Region {
+    node: u32,
+    first_rank: usize,
+    ranks: usize,
+}
+
+/// Bits of a coordinate within its region that the search for a cut resolves.
+const BITS: u32 = 42;
+/// A particle that is in no region any more, because its rank is known.
+const DONE: u32 = u32::MAX;
+
+impl<const D: usize> Orb<D> {
+    /// Divides the particles of all ranks. Collective.
+    ///
+    /// `weights` is the cost of each particle, for example the measured length of its neighbour
+    /// list; an empty slice means that all cost the same.
+    ///
+    /// ```
+    /// use sph_decomp::{Orb, Partition, Solo, ThreadRanks, Communicator, PartitionError};
+    ///
+    /// // Rank 0 holds all particles at first.
+    /// let counts = ThreadRanks::run(3, |comm| {
+    ///     let positions: Vec<[f64; 2]> = match comm.rank() {
+    ///         0 => (0..300).map(|i| [f64::from(i % 30), f64::from(i / 30)]).collect(),
+    ///         _ => vec![],
+    ///     };
+    ///     let orb = Orb::build(&comm, &positions, &[])?;
+    ///     let owners = orb.owners(&positions);
+    ///     Ok::<_, PartitionError>([0, 1, 2].map(|rank| owners.iter().filter(|&&o| o == rank).count()))
+    /// });
+    /// assert_eq!(counts.unwrap()[0], [100, 100, 100]);
+    /// ```
+    pub fn build<C: Communicator>(
+        comm: &C,
+        positions: &[[f64; D]],
+        weights: &[f64],
+    ) -> Result<Self, PartitionError> {
+        check_positions(positions)?;
+        let weights = to_integers(comm, weights, positions.len())?;
+        let mut nodes = Vec::new();
+        let mut regions = Vec::new();
+        if comm.size() > 1 {
+            regions.push(Region { node: 0, first_rank: 0, ranks: comm.size() });
+        }
+        let mut region_of = vec![if regions.is_empty() { DONE } else { 0 }; positions.len()];
+        while !regions.is_empty() {
+            let level = Level { positions, weights: &weights, region_of: &region_of };
+            let cuts = level.cut(comm, &regions)?;
+            // Children get their numbers in the order of the regions, the same on all ranks.
+            let mut next = Vec::new();
+            let next_node = (nodes.len() + regions.len()) as u32;
+            let mut child = |first_rank: usize, ranks: usize| match ranks {
+                1 => (Child::Rank(first_rank as u32), DONE),
+                _ => {
+                    let node = next_node + next.len() as u32;
+                    next.push(Region { node, first_rank, ranks });
+                    (Child::Node(node), next.len() as u32 - 1)
+                }
+            };
+            let mut heirs = Vec::new();
+            for (region, &(axis, cut)) in regions.iter().zip(&cuts) {
+                debug_assert_eq!(region.node as usize, nodes.len());
+                let below = region.ranks / 2;
+                let (low, low_region) = child(region.first_rank, below);
+                let (high, high_region) = child(region.first_rank + below, region.ranks - below);
+                nodes.push(Node { axis, cut, low, high });
+                heirs.push((low_region, high_region));
+            }
+            for (region, x) in region_of.iter_mut().zip(positions) {
+                if let Some(&(low, high)) = heirs.get(*region as usize) {
+                    let (axis, cut) = cuts[*region as usize];
+                    *region = if x[axis] < cut { low } else { high };
+                }
+            }
+            regions = next;
+        }
+        Ok(Self { nodes })
+    }
+}
+
+impl<const D: usize> Partition<D> for Orb<D> {
+    fn owner(&self, x: &[f64; D]) -> usize {
+        let mut place = if self.nodes.is_empty() { Child::Rank(0) } else { Child::Node(0) };
+        loop {
+            match place {
+                Child::Rank(rank) => return rank as usize,
+                Child::Node(node) => {
+                    let node = &self.nodes[node as usize];
+                    place = if x[node.axis] < node.cut { node.low } else { node.high };
+                }
+            }
+        }
+    }
+}
+
+/// One level of the bisection: all regions are cut at the same time.
+struct Level<'a, const D: usize> {
+    positions: &'a [[f64; D]],
+    weights: &'a [u64],
+    region_of: &'a [u32],
+}
+
+impl<const D: usize> Level<'_, D> {
+    /// The axis and coordinate at which each region is cut.
+    fn cut<C: Communicator>(
+        &self,
+        comm: &C,
+        regions: &[Region],
+    ) -> Result<Vec<(usize, f64)>, PartitionError> {
+        let boxes = self.boxes(comm, regions.len())?;
+        let axes: Vec<usize> = boxes.iter().map(longest_side).collect();
+        let mut totals = vec![0; regions.len()];
+        let mut keyed = Vec::with_capacity(self.positions.len());
+        for ((x, &weight), &group) in self.positions.iter().zip(self.weights).zip(self.region_of) {
+            if group != DONE {
+                let axis = axes[group as usize];
+                let bounds = &boxes[group as usize];
+                let key = key(x[axis], bounds.low[axis], bounds.high[axis]);
+                totals[group as usize] += weight;
+                keyed.push((x[axis], Keyed { group, key, weight }));
+            }
+        }
+        comm.sum_u64(&mut totals)?;
+        let target = |(group, (region, &total)): (u32, (&Region, &u64))| {
+            let weight = u128::from(total) * (region.ranks / 2) as u128 / region.ranks as u128;
+            Target { group, weight: weight as u64 }
+        };
+        let targets: Vec<Target> = (0..).zip(regions.iter().zip(&totals)).map(target).collect();
+        let particles: Vec<Keyed> = keyed.iter().map(|(_, particle)| *particle).collect();
+        let cuts = find(comm, &particles, &targets, BITS)?;
+        // The last coordinate below each key and, negated, the first at or above it.
+        let mut beside = vec![f64::NEG_INFINITY; 2 * regions.len()];
+        for (x, particle) in &keyed {
+            let group = particle.group as usize;
+            if particle.key < cuts[group].key {
+                beside[2 * group] = beside[2 * group].max(*x);
+            } else {
+                beside[2 * group + 1] = beside[2 * group + 1].max(-x);
+            }
+        }
+        comm.max_f64(&mut beside)?;
+        let cut = |(&axis, beside): (&usize, &[f64])| (axis, between(beside[0], -beside[1]));
+        Ok(axes.iter().zip(beside.chunks_exact(2)).map(cut).collect())
+    }
+
+    /// The tight box of the particles in each region.
+    fn boxes<C: Communicator>(
+        &self,
+        comm: &C,
+        regions: usize,
+    ) -> Result<Vec<Aabb<D>>, PartitionError> {
+        let mut boxes = vec![Aabb::EMPTY; regions];
+        for (x, &region) in self.positions.iter().zip(self.region_of) {
+            if region != DONE {
+                boxes[region as usize].add(x);
+            }
+        }
+        let mut sides = Vec::with_capacity(2 * D * regions);
+        for bounds in &boxes {
+            sides.extend(bounds.low.map(|low| -low));
+            sides.extend(bounds.high);
+        }
+        comm.max_f64(&mut sides)?;
+        let bounds = |sides: &[f64]| Aabb {
+            low: std::array::from_fn(|axis| -sides[axis]),
+            high: std::array::from_fn(|axis| sides[D + axis]),
+        };
+        Ok(sides.chunks_exact(2 * D).map(bounds).collect())
+    }
+}
+
+/// The longest side of a box; the first of equals.
+fn longest_side<const D: usize>(bounds: &Aabb<D>) -> usize {
+    let side = |axis: usize| bounds.high[axis] - bounds.low[axis];
+    (1..D).fold(0, |best, axis| if side(axis) > side(best) { axis } else { best })
+}
+
+/// A coordinate as an integer within its region: a larger coordinate never has a smaller key.
+fn key(x: f64, low: f64, high: f64) -> u64 {
+    let largest = (1_u64 << BITS) - 1;
+    let part = (x - low) / (high - low);
+    // 0/0 when all coordinates are equal: the cast makes NaN zero.
+    ((part * largest as f64) as u64).min(largest)
+}
+
+/// A coordinate between the last particle below a cut and the first above it, as far as possible
+/// from both, so that a cut falls between two layers of a lattice and not into the rounding errors
+/// of one. A side may be empty.
+fn between(last: f64, first: f64) -> f64 {
+    match (last.is_finite(), first.is_finite()) {
+        (true, true) => {
+            let middle = 0.5 * last + 0.5 * first;
+            if middle > last { middle } else { first }
+        }
+        (true, false) => last.next_up(),
+        (false, true) => first,
+        (false, false) => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cuts_lie_between_their_neighbours() {
+        assert_eq!(between(1.0, 2.0), 1.5);
+        assert_eq!(between(1.0, 1.0_f64.next_up()), 1.0_f64.next_up());
+        assert!(between(1.0, f64::INFINITY) > 1.0);
+        assert_eq!(between(f64::NEG_INFINITY, 1.0), 1.0);
+    }
+
+    #[test]
+    fn coincident_coordinates_have_one_key() {
+        assert_eq!(key(3.0, 3.0, 3.0), 0);
+        assert_eq!(key(4.0, 3.0, 4.0), (1 << BITS) - 1);
+    }
+}
