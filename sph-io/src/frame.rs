@@ -1,0 +1,147 @@
+//! The particles of one moment, borrowed from whoever holds them.
+
+use crate::column::{Column, check_columns};
+use crate::{IoError, Scalar, Values};
+
+/// Positions and named columns of the particles at one time.
+///
+/// Nothing is copied: the frame borrows the caller's arrays until it is written.
+///
+/// # Examples
+///
+/// ```
+/// use sph_io::ParticleFrame;
+///
+/// let positions = [[0.0, 0.5], [1.0, 0.5]];
+/// let pressure = [9.81_f32, 4.9];
+/// let ids = [0_u64, 1];
+/// let frame = ParticleFrame::new(0.25, &positions)
+///     .with("pressure", &pressure[..])
+///     .with("id", &ids[..]);
+/// assert_eq!(frame.len(), 2);
+/// ```
+#[derive(Clone, Debug)]
+pub struct ParticleFrame<'a, const D: usize> {
+    pub(crate) time: f64,
+    pub(crate) positions: &'a [[f64; D]],
+    pub(crate) columns: Vec<(String, Column<'a>)>,
+    pub(crate) selection: Option<&'a [u32]>,
+}
+
+impl<'a, const D: usize> ParticleFrame<'a, D> {
+    /// A frame of positions in metres at `time` in seconds.
+    #[must_use]
+    pub fn new(time: f64, positions: &'a [[f64; D]]) -> Self {
+        Self { time, positions, columns: Vec::new(), selection: None }
+    }
+
+    /// Adds a column, one row per particle. Names and lengths are checked when the frame is
+    /// written.
+    #[must_use]
+    pub fn with(mut self, name: impl Into<String>, column: impl Into<Column<'a>>) -> Self {
+        self.columns.push((name.into(), column.into()));
+        self
+    }
+
+    /// Writes only these particles, in this order: fluid without walls, or sorted by id.
+    #[must_use]
+    pub fn select(mut self, selection: &'a [u32]) -> Self {
+        self.selection = Some(selection);
+        self
+    }
+
+    /// Number of particles that will be written.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.selection.map_or(self.positions.len(), <[u32]>::len)
+    }
+
+    /// True when no particle will be written.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Time in seconds.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    pub(crate) fn check(&self) -> Result<(), IoError> {
+        check_columns(&self.columns, self.positions.len())?;
+        let particles = self.positions.len();
+        let out_of_range =
+            self.selection.and_then(|s| s.iter().find(|&&i| i as usize >= particles));
+        match out_of_range {
+            Some(&index) => Err(IoError::Selection { index, particles }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Components in the file of a row of `components`: VTK knows no vectors in the plane.
+pub(crate) const fn padded(components: usize) -> usize {
+    if components == 2 { 3 } else { components }
+}
+
+/// Rows of numbers as a VTK file wants them: vectors of two components get a zero third one.
+pub(crate) struct Rows<'a> {
+    pub(crate) scalar: Scalar,
+    pub(crate) components: usize,
+    bytes: &'a [u8],
+    row: usize,
+}
+
+impl<'a> Rows<'a> {
+    pub(crate) fn new(values: &'a Values<'_>, components: usize) -> Self {
+        Self::from_bytes(values.scalar(), components, values.bytes())
+    }
+
+    pub(crate) fn from_bytes(scalar: Scalar, components: usize, bytes: &'a [u8]) -> Self {
+        let padded = padded(components);
+        Self { scalar, components: padded, bytes, row: components * scalar.size() }
+    }
+
+    /// Bytes of one row in the file.
+    pub(crate) fn row_in_file(&self) -> usize {
+        self.components * self.scalar.size()
+    }
+
+    /// Gives the rows to `sink` in pieces of bounded size, so that no copy of a column is made.
+    pub(crate) fn for_each_piece<E>(
+        &self,
+        selection: Option<&[u32]>,
+        mut sink: impl FnMut(&[u8]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        const ROWS: usize = 8192;
+        let width = self.row_in_file();
+        if selection.is_none() && width == self.row {
+            return sink(self.bytes);
+        }
+        // Only the leading `row` bytes of each slot are ever written, the rest stays zero.
+        let mut buffer = vec![0_u8; ROWS * width];
+        match selection {
+            Some(selection) => {
+                for indices in selection.chunks(ROWS) {
+                    for (slot, &i) in buffer.chunks_exact_mut(width).zip(indices) {
+                        let start = i as usize * self.row;
+                        slot[..self.row].copy_from_slice(&self.bytes[start..start + self.row]);
+                    }
+                    sink(&buffer[..indices.len() * width])?;
+                }
+            }
+            None => {
+                for rows in self.bytes.chunks(ROWS * self.row) {
+                    for (slot, row) in
+                        buffer.chunks_exact_mut(width).zip(rows.chunks_exact(self.row))
+                    {
+                        slot[..self.row].copy_from_slice(row);
+                    }
+                    sink(&buffer[..rows.len() / self.row * width])?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
