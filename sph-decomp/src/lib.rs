@@ -7,9 +7,13 @@ mod halo;
 mod migrate;
 mod partition;
 mod parts;
+mod statistics;
+mod sums;
 mod zone;
 
 pub use columns::{ColumnError, Columns};
+#[cfg(feature = "mpi")]
+pub use comm::Mpi;
 pub use comm::{
     CommError, Communicator, Exposed, Part, Progress, RanksError, Solo, ThreadRank, ThreadRanks,
     Traffic, check_same_build,
@@ -18,4 +22,6 @@ pub use halo::{Halo, HaloPlan, PlanError};
 pub use migrate::{MigrateError, MigrationReport, migrate};
 pub use partition::{HilbertCurve, Imbalance, Orb, Partition, PartitionError, Rebalance};
 pub use parts::Parts;
+pub use statistics::RankStatistics;
+pub use sums::{ExactSum, global_ranges, global_sums};
 pub use zone::{MaxReach, MeanReach, PairReach, Reach, Zone, ZoneError, ZoneOptions};

@@ -50,6 +50,12 @@ pub enum CommError {
         /// Number of ranks.
         size: usize,
     },
+    /// Two messages of one exchange are addressed to the same rank.
+    #[error("two messages of one exchange are addressed to rank {rank}; join them")]
+    TwoMessages {
+        /// The address.
+        rank: usize,
+    },
     /// The parts of a buffer overlap, are out of order or reach past its end.
     #[error(
         "part {start}..{end} of a buffer of {length} bytes overlaps the part before it or reaches \

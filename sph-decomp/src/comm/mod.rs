@@ -3,11 +3,15 @@
 mod build;
 mod error;
 mod mailbox;
+#[cfg(feature = "mpi")]
+mod mpi;
 pub(crate) mod order;
 mod solo;
 mod threads;
 mod traffic;
 
+#[cfg(feature = "mpi")]
+pub use self::mpi::Mpi;
 pub use build::check_same_build;
 pub use error::CommError;
 pub use solo::Solo;
@@ -27,9 +31,8 @@ pub trait Communicator {
     /// The number of ranks.
     fn size(&self) -> usize;
 
-    /// Sends messages to some ranks; returns what came, sorted by sender. Empty messages are not
-    /// delivered, several messages to one rank arrive in their order. The receivers need not know
-    /// who sends. A rank may write to itself.
+    /// Sends at most one message to each rank; returns what came, sorted by sender. The receivers
+    /// need not know who sends. Empty messages are not delivered. A rank may write to itself.
     fn exchange_some(
         &self,
         send: Vec<(usize, Vec<u8>)>,
@@ -94,6 +97,19 @@ pub trait Communicator {
         }
         Ok(())
     }
+}
+
+/// Checks that letters go to existing ranks, at most one to each.
+pub(crate) fn check_letters(send: &[(usize, Vec<u8>)], size: usize) -> Result<(), CommError> {
+    let mut written = vec![false; size];
+    for &(rank, _) in send {
+        match written.get_mut(rank) {
+            None => return Err(CommError::NoSuchRank { rank, size }),
+            Some(true) => return Err(CommError::TwoMessages { rank }),
+            Some(written) => *written = true,
+        }
+    }
+    Ok(())
 }
 
 /// The bytes of a message of `count` words of eight bytes.

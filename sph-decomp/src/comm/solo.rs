@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::{CommError, Communicator, Exposed, Progress, Traffic};
+use super::{CommError, Communicator, Exposed, Progress, Traffic, check_letters};
 
 /// The communicator of a program that runs alone.
 ///
@@ -32,10 +32,8 @@ impl Communicator for Solo {
         &self,
         send: Vec<(usize, Vec<u8>)>,
     ) -> Result<Vec<(usize, Vec<u8>)>, CommError> {
-        match send.iter().find(|(rank, _)| *rank != 0) {
-            Some(&(rank, _)) => Err(CommError::NoSuchRank { rank, size: 1 }),
-            None => Ok(send.into_iter().filter(|(_, bytes)| !bytes.is_empty()).collect()),
-        }
+        check_letters(&send, 1)?;
+        Ok(send.into_iter().filter(|(_, bytes)| !bytes.is_empty()).collect())
     }
 
     fn all_gather(&self, bytes: &[u8]) -> Result<Vec<Vec<u8>>, CommError> {

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use super::mailbox::{Message, PostOffice};
 use super::order::max_ordered;
-use super::{CommError, Communicator, Exposed, Progress, Traffic, words};
+use super::{CommError, Communicator, Exposed, Progress, Traffic, check_letters, words};
 
 /// Runs a program on several ranks that are threads of this process: the embedded way to use and
 /// to test a decomposition, without MPI.
@@ -204,26 +204,20 @@ impl Communicator for ThreadRank {
         send: Vec<(usize, Vec<u8>)>,
     ) -> Result<Vec<(usize, Vec<u8>)>, CommError> {
         let size = self.size();
-        if let Some(&(rank, _)) = send.iter().find(|(rank, _)| *rank >= size) {
-            return Err(CommError::NoSuchRank { rank, size });
-        }
+        check_letters(&send, size)?;
         let operation = self.next_operation();
+        // Everybody gets a letter, most of them empty: receivers then know when all have come.
+        let mut letters = vec![Vec::new(); size];
         for (rank, bytes) in send {
-            if !bytes.is_empty() {
-                self.office.post(self.rank, rank, Message { operation, bytes });
-            }
+            letters[rank] = bytes;
         }
-        // An empty message closes the letters of a rank.
-        for rank in 0..size {
-            self.post(rank, operation, &[]);
+        for (rank, bytes) in letters.into_iter().enumerate() {
+            self.office.post(self.rank, rank, Message { operation, bytes });
         }
         let mut received = Vec::new();
         for rank in 0..size {
-            loop {
-                let bytes = self.take(rank, operation)?;
-                if bytes.is_empty() {
-                    break;
-                }
+            let bytes = self.take(rank, operation)?;
+            if !bytes.is_empty() {
                 received.push((rank, bytes));
             }
         }

@@ -86,7 +86,9 @@ pub(super) fn find<C: Communicator>(
     }
     let cut = |(search, target): (&Search, &Target)| {
         let missing = target.weight.saturating_sub(search.below);
-        let above = u64::from(missing > search.inside - missing.min(search.inside));
+        // Of two equally good cuts the higher one, so that no side stays empty without need.
+        let nearer = missing >= search.inside.saturating_sub(missing);
+        let above = u64::from(nearer && search.inside > 0);
         Cut { key: search.prefix + above }
     };
     Ok(searches.iter().zip(targets).map(cut).collect())

@@ -1,6 +1,8 @@
 //! Clouds of particles for the tests.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
+pub mod scenario;
+
 use proptest::prelude::*;
 use sph_decomp::{Communicator, HilbertCurve, Orb, Partition, PartitionError, ThreadRanks};
 
@@ -42,9 +44,9 @@ impl<const D: usize> Cloud<D> {
     /// The distance of two particles, to the nearest image on periodic axes.
     pub fn distance(&self, i: usize, j: usize, period: &[Option<f64>; D]) -> f64 {
         let mut sum = 0.0;
-        for axis in 0..D {
+        for (axis, length) in period.iter().enumerate() {
             let d = (self.positions[i][axis] - self.positions[j][axis]).abs();
-            let d = period[axis].map_or(d, |length| d.min(length - d));
+            let d = length.map_or(d, |length| d.min(length - d));
             sum += d * d;
         }
         sum.sqrt()

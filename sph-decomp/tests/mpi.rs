@@ -1,0 +1,204 @@
+//! The MPI communicator against thread ranks, and what happens when a rank of a job fails.
+//!
+//! Every test starts this very program again under `mpirun`; the ranks of such a job run
+//! `rank_program`, and an environment variable tells them what to do.
+#![cfg(feature = "mpi")]
+
+mod common;
+
+use std::process::{Command, Output};
+use std::time::{Duration, Instant};
+
+use common::scenario;
+use sph_decomp::{
+    CommError, Communicator, Mpi, Part, Progress, ThreadRanks, Traffic, check_same_build,
+};
+
+const TASK: &str = "SPH_DECOMP_MPI_TASK";
+
+/// Runs a task on the ranks of an MPI job.
+fn job(ranks: usize, task: &str) -> Output {
+    let program = std::env::current_exe().expect("the path of this program");
+    Command::new("mpirun")
+        .args(["--oversubscribe", "-n", &ranks.to_string()])
+        .arg(program)
+        .args(["--ignored", "--exact", "rank_program", "--nocapture", "--test-threads=1"])
+        .env(TASK, task)
+        // Only for machines on which the tests run as root, such as containers.
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .output()
+        .expect("mpirun is installed")
+}
+
+fn succeeds(ranks: usize, task: &str) {
+    let output = job(ranks, task);
+    let text = String::from_utf8_lossy(&output.stdout);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{ranks} ranks: {text}\n{errors}");
+    assert_eq!(text.matches("test result: ok. 1 passed").count(), ranks, "{text}\n{errors}");
+}
+
+/// The job ends by itself, soon, with an error code and this message.
+fn fails(ranks: usize, task: &str, message: &str) {
+    let start = Instant::now();
+    let output = job(ranks, task);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success());
+    assert!(errors.contains(message), "{errors}");
+    // A rank that hangs would sit there for minutes.
+    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
+}
+
+#[test]
+fn the_same_bits_as_thread_ranks() {
+    for ranks in 1..=4 {
+        succeeds(ranks, "scenario");
+    }
+}
+
+#[test]
+fn collectives_deliver() {
+    for ranks in [1, 2, 3] {
+        succeeds(ranks, "collectives");
+    }
+}
+
+#[test]
+fn long_messages_travel_in_pieces() {
+    succeeds(2, "pieces");
+}
+
+#[test]
+fn an_error_of_one_rank_ends_the_job() {
+    fails(3, "error", "rank 1: the tank is empty");
+}
+
+#[test]
+fn a_panic_of_one_rank_ends_the_job() {
+    fails(2, "panic", "the bottom fell out");
+}
+
+#[test]
+fn a_panic_in_the_middle_of_a_pass_ends_the_job() {
+    fails(2, "panic in flight", "a neighbour list is broken");
+}
+
+#[test]
+fn unequal_plans_are_an_error() {
+    fails(2, "unequal", "rank 1 sent 8 bytes where 16 were expected");
+}
+
+#[test]
+fn a_different_build_is_named() {
+    fails(3, "build", "rank 2 runs a different build: it says `2`");
+}
+
+type Outcome = Result<(), Box<dyn std::error::Error + Send + Sync>>;
+
+/// What one rank of a job does.
+#[test]
+#[ignore = "runs under mpirun, started by the other tests"]
+fn rank_program() {
+    let task = std::env::var(TASK).expect("started by the other tests");
+    let mpi = Mpi::start().expect("MPI starts");
+    let mpi = if task == "pieces" { mpi.with_pieces_of(1000) } else { mpi };
+    if let Err(error) = rank(&mpi, &task) {
+        mpi.abort(&error.to_string());
+    }
+}
+
+fn rank(mpi: &Mpi, task: &str) -> Outcome {
+    match task {
+        "scenario" => same_as_threads(mpi),
+        "collectives" => collectives(mpi),
+        "pieces" => {
+            collectives(mpi)?;
+            same_as_threads(mpi)
+        }
+        "error" if mpi.rank() == 1 => Err("the tank is empty".into()),
+        "panic" if mpi.rank() == 1 => panic!("the bottom fell out"),
+        "error" | "panic" => Ok(mpi.max_f64(&mut [0.0])?),
+        "panic in flight" => {
+            pass(mpi, 8, 8, &mut |_| assert!(mpi.rank() == 0, "a neighbour list is broken"))
+        }
+        // Rank 1 sends less than rank 0 expects.
+        "unequal" if mpi.rank() == 0 => pass(mpi, 8, 16, &mut |_| ()),
+        "unequal" => pass(mpi, 8, 8, &mut |_| ()),
+        "build" => Ok(check_same_build(mpi, if mpi.rank() == 2 { b"2" } else { b"1" })?),
+        other => Err(format!("there is no task `{other}`").into()),
+    }
+}
+
+/// A pass between ranks 0 and 1.
+fn pass(
+    mpi: &Mpi,
+    sent: usize,
+    expected: usize,
+    local: &mut dyn FnMut(&mut dyn Progress),
+) -> Outcome {
+    let other = 1 - mpi.rank();
+    mpi.overlap(
+        Traffic {
+            send: &mut vec![1; sent],
+            send_parts: &[Part { rank: other, bytes: 0..sent }],
+            receive: &mut vec![0; expected],
+            receive_parts: &[Part { rank: other, bytes: 0..expected }],
+            maxima: &mut [],
+        },
+        &mut |_| (),
+        local,
+    )?;
+    Ok(())
+}
+
+fn same_as_threads(mpi: &Mpi) -> Outcome {
+    for hilbert in [false, true] {
+        let mine = scenario::run(mpi, hilbert)?;
+        let all = mpi.all_gather(bytes(&mine))?;
+        if mpi.rank() == 0 {
+            let threads = ThreadRanks::run(mpi.size(), |comm| scenario::run(&comm, hilbert))?;
+            for (rank, (mpi, threads)) in all.iter().zip(&threads).enumerate() {
+                assert!(mpi == bytes(threads), "rank {rank} differs");
+            }
+        }
+    }
+    Ok(())
+}
+
+fn bytes(values: &[f64]) -> &[u8] {
+    bytemuck::cast_slice(values)
+}
+
+/// Every blocking operation, several times in a row so that one could overtake another.
+fn collectives(mpi: &Mpi) -> Outcome {
+    let (me, size) = (mpi.rank(), mpi.size());
+    for round in 0..20 {
+        // Only to ranks below, of unequal length, and to itself.
+        let letter =
+            |from: usize, to: usize| vec![(from + to + round) as u8; 100 * from * (to + 1) + 1];
+        let sent = (0..=me).map(|to| (to, letter(me, to))).collect();
+        let got = mpi.exchange_some(sent)?;
+        assert_eq!(got, (me..size).map(|from| (from, letter(from, me))).collect::<Vec<_>>());
+
+        let all = mpi.all_gather(&letter(me, 0)[..round % 2])?;
+        assert_eq!(
+            all,
+            (0..size).map(|from| letter(from, 0)[..round % 2].to_vec()).collect::<Vec<_>>()
+        );
+
+        let all = mpi.all_to_all((0..size).map(|to| letter(me, to)).collect())?;
+        assert_eq!(all, (0..size).map(|from| letter(from, me)).collect::<Vec<_>>());
+
+        let mut sums = [me as u64, u64::MAX];
+        mpi.sum_u64(&mut sums)?;
+        assert_eq!(sums, [(0..size as u64).sum(), (size as u64).wrapping_neg()]);
+
+        let mut maxima = [-(me as f64), if me == 0 { f64::NAN } else { 1.0 }];
+        mpi.max_f64(&mut maxima)?;
+        assert!(maxima[0] == 0.0 && maxima[1].is_nan());
+    }
+    let far = mpi.exchange_some(vec![(size, vec![1])]);
+    assert_eq!(far, Err(CommError::NoSuchRank { rank: size, size }));
+    Ok(())
+}
