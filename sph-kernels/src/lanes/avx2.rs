@@ -292,10 +292,11 @@ impl Lanes for F64x4 {
             out_of_range(table.len(), index);
         }
         let table = table.as_ptr();
+        let at = [0, 1, 2, 3].map(|l: usize| reload(&index[l]));
         // SAFETY: every index is below the length of the table, so each row is two times four
         // readable floats; no alignment needed.
         let row = |l: usize, half: usize| unsafe {
-            _mm256_loadu_pd(table.add(reload(&index[l])).cast::<f64>().add(4 * half))
+            _mm256_loadu_pd(table.add(at[l]).cast::<f64>().add(4 * half))
         };
         let [a, b, c, d] = transpose_4x4([row(0, 0), row(1, 0), row(2, 0), row(3, 0)]);
         let [e, f, g, h] = transpose_4x4([row(0, 1), row(1, 1), row(2, 1), row(3, 1)]);

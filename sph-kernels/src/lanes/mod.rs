@@ -146,3 +146,6 @@ fn head_mut<T, const N: usize>(slice: &mut [T]) -> &mut [T; N] {
         None => too_short(N, given),
     }
 }
+
+#[cfg(test)]
+mod tests;
