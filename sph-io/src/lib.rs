@@ -13,9 +13,9 @@ mod vtu;
 
 pub use atomic::{remove_stale_temporaries, write_atomically, write_text_atomically};
 pub use checkpoint::{
-    Attribute, Attributes, Checkpoint, CheckpointFile, CheckpointInfo, CheckpointReader,
-    CheckpointWriter, FORMAT_VERSION, LatestCheckpoint, Shape, checkpoint_name, latest_checkpoint,
-    prune_checkpoints, read_checkpoint, remove_checkpoints, write_checkpoint,
+    Attribute, Attributes, Checkpoint, CheckpointFile, CheckpointInfo, FORMAT_VERSION,
+    LatestCheckpoint, checkpoint_name, latest_checkpoint, prune_checkpoints, read_checkpoint,
+    remove_checkpoints, write_checkpoint,
 };
 pub use column::{Column, Element, Number, Scalar, Values};
 pub use error::IoError;

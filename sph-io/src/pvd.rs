@@ -77,12 +77,16 @@ impl PvdIndex {
 
     /// Continues an index from `time`: entries of later times are dropped, from the disk too.
     ///
-    /// The files that they name are not deleted.
+    /// The files that they name are not deleted. An index that does not exist yet is started.
     ///
     /// # Errors
     ///
-    /// As [`PvdIndex::open`], and [`IoError::Write`].
+    /// [`IoError::Text`] as [`PvdIndex::open`], and [`IoError::Write`].
     pub fn resume(path: impl Into<PathBuf>, time: f64) -> Result<Self, IoError> {
+        let path = path.into();
+        if !path.exists() {
+            return Self::create(path);
+        }
         let mut index = Self::open(path)?;
         index.entries.retain(|entry| entry.time <= time);
         index.write()?;
@@ -225,7 +229,7 @@ mod tests {
     fn resuming_drops_later_times_and_a_repeated_time_is_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.pvd");
-        let mut index = PvdIndex::create(&path).unwrap();
+        let mut index = PvdIndex::resume(&path, 1.0).unwrap();
         for i in 0..5 {
             index.add(f64::from(i), &[format!("{i}.vtu")]).unwrap();
         }

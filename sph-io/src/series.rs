@@ -55,11 +55,12 @@ impl SnapshotSeries {
     /// Continues a series from `time` in seconds: later snapshots leave the index, their files
     /// are written again.
     ///
-    /// Parts that were fixed are taken over from the index; naming them again is allowed.
+    /// Parts that were fixed are taken over from the index; naming them again is allowed. A series
+    /// that does not exist yet is started.
     ///
     /// # Errors
     ///
-    /// [`IoError`] when the index is missing or damaged.
+    /// [`IoError`] when the index is damaged or the folder cannot be written.
     pub fn resume(folder: impl Into<PathBuf>, name: &str, time: f64) -> Result<Self, IoError> {
         crate::column::check_name(name)?;
         let folder = folder.into();

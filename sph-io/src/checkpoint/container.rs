@@ -9,7 +9,7 @@ use crate::{Column, Scalar};
 
 /// Type and extent of a dataset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shape {
+pub(super) struct Shape {
     /// Machine type of the numbers.
     pub scalar: Scalar,
     /// Rows.
@@ -21,7 +21,7 @@ pub struct Shape {
 /// Puts groups, attributes and datasets into a file.
 ///
 /// Groups are paths without a leading `/`; they come into being when something is put into them.
-pub trait CheckpointWriter {
+pub(super) trait CheckpointWriter {
     /// Adds an attribute to a group.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ pub trait CheckpointWriter {
 }
 
 /// Takes attributes and datasets out of a file.
-pub trait CheckpointReader {
+pub(super) trait CheckpointReader {
     /// The attributes of a group that have one of our types.
     ///
     /// # Errors

@@ -15,15 +15,16 @@ mod attributes;
 mod container;
 mod folder;
 mod pure;
+mod read;
 mod schema;
 mod state;
+mod write;
 
 pub use attributes::{Attribute, Attributes};
-pub use container::{CheckpointReader, CheckpointWriter, Shape};
 pub use folder::{
     LatestCheckpoint, checkpoint_name, latest_checkpoint, prune_checkpoints, remove_checkpoints,
 };
-pub use schema::{
-    CheckpointFile, CheckpointInfo, FORMAT_VERSION, read_checkpoint, write_checkpoint,
-};
+pub use read::{CheckpointFile, CheckpointInfo, read_checkpoint};
+pub use schema::FORMAT_VERSION;
 pub use state::Checkpoint;
+pub use write::write_checkpoint;
