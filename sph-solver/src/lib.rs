@@ -1,1 +1,21 @@
-//! Smoothed particle hydrodynamics: scenes, schemes, time integration and the sph program
+//! Smoothed particle hydrodynamics: scenes, schemes, time integration and the `sph` program.
+#![forbid(unsafe_code)]
+
+pub mod block;
+pub mod eos;
+pub mod error;
+pub mod lio;
+pub mod model;
+pub mod passes;
+pub mod physics;
+pub mod rank;
+pub mod records;
+pub mod run;
+pub mod simulation;
+pub mod spray;
+pub mod state;
+pub mod sweep;
+pub mod team;
+pub mod terms;
+pub mod timestep;
+pub mod timings;

@@ -1,0 +1,138 @@
+//! A block: the state of consecutive particles, borrowed apart so that blocks advance in parallel.
+
+use crate::records::Record;
+
+/// Columns of the owned fluid particles that a pass may change.
+#[derive(Debug)]
+pub struct FluidColumns<'a, const D: usize> {
+    /// Positions, m.
+    pub position: &'a mut [[f64; D]],
+    /// Velocities, m/s.
+    pub velocity: &'a mut [[f64; D]],
+    /// Densities, kg/m³.
+    pub density: &'a mut [f64],
+    /// Masses, kg.
+    pub mass: &'a [f64],
+    /// Whether a particle belongs to spray, see [`crate::spray`].
+    pub spray: &'a [bool],
+}
+
+impl<'a, const D: usize> FluidColumns<'a, D> {
+    /// The block of all owned fluid particles.
+    pub fn block<S, R>(self, rates: &'a mut [R], new: &'a mut [Record<S>]) -> Block<'a, D, S, R> {
+        let Self { position, velocity, density, mass, spray } = self;
+        Block { first: 0, position, velocity, density, mass, spray, rates, new }
+    }
+}
+
+/// Consecutive fluid particles of a rank: what a pass may change.
+#[derive(Debug)]
+pub struct Block<'a, const D: usize, S, R> {
+    /// Index of the first particle among the fluid particles of the rank.
+    pub first: usize,
+    /// Positions, m.
+    pub position: &'a mut [[f64; D]],
+    /// Velocities, m/s.
+    pub velocity: &'a mut [[f64; D]],
+    /// Densities, kg/m³.
+    pub density: &'a mut [f64],
+    /// Masses, kg.
+    pub mass: &'a [f64],
+    /// Whether a particle belongs to spray.
+    pub spray: &'a [bool],
+    /// Results of the flux loop.
+    pub rates: &'a mut [R],
+    /// Records that the next pass reads.
+    pub new: &'a mut [Record<S>],
+}
+
+impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.density.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.density.is_empty()
+    }
+
+    /// The first `n` particles and the rest.
+    pub fn split_at(self, n: usize) -> (Self, Self) {
+        let (position, position2) = self.position.split_at_mut(n);
+        let (velocity, velocity2) = self.velocity.split_at_mut(n);
+        let (density, density2) = self.density.split_at_mut(n);
+        let (mass, mass2) = self.mass.split_at(n);
+        let (spray, spray2) = self.spray.split_at(n);
+        let (rates, rates2) = self.rates.split_at_mut(n);
+        let (new, new2) = self.new.split_at_mut(n);
+        (
+            Block { first: self.first, position, velocity, density, mass, spray, rates, new },
+            Block {
+                first: self.first + n,
+                position: position2,
+                velocity: velocity2,
+                density: density2,
+                mass: mass2,
+                spray: spray2,
+                rates: rates2,
+                new: new2,
+            },
+        )
+    }
+
+    /// The same block for a shorter time.
+    pub fn reborrow(&mut self) -> Block<'_, D, S, R> {
+        Block {
+            first: self.first,
+            position: self.position,
+            velocity: self.velocity,
+            density: self.density,
+            mass: self.mass,
+            spray: self.spray,
+            rates: self.rates,
+            new: self.new,
+        }
+    }
+
+    /// Pieces of `size` particles, the last one shorter.
+    pub fn pieces(&mut self, size: usize) -> impl Iterator<Item = Block<'_, D, S, R>> {
+        let mut rest = Some(self.reborrow());
+        std::iter::from_fn(move || {
+            let block = rest.take().filter(|block| !block.is_empty())?;
+            let size = size.min(block.len());
+            let (piece, tail) = block.split_at(size);
+            rest = Some(tail);
+            Some(piece)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_cover_the_block_once() {
+        let n = 10;
+        let (mut x, mut v, mut d) = (vec![[0.0; 2]; n], vec![[0.0; 2]; n], vec![0.0; n]);
+        let (m, mut r, mut new) = (vec![1.0; n], vec![0.0; n], vec![[0.0f32; 8]; n]);
+        let mut block = Block {
+            first: 5,
+            position: &mut x,
+            velocity: &mut v,
+            density: &mut d,
+            mass: &m,
+            spray: &[false; 10],
+            rates: &mut r,
+            new: &mut new,
+        };
+        let mut sizes = Vec::new();
+        for piece in block.pieces(4) {
+            piece.density.iter_mut().for_each(|d| *d += 1.0);
+            sizes.push((piece.first, piece.len()));
+        }
+        assert_eq!(sizes, [(5, 4), (9, 4), (13, 2)]);
+        assert_eq!(d, vec![1.0; n]);
+    }
+}

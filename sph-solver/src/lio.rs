@@ -1,0 +1,145 @@
+//! The LIO pass: Algorithm 1 of Oger, Guibert, de Leffe & Piccinali, "Parallelization of a 3-D SPH
+//! code for massive HPC simulations", the one function through which every sweep of every run goes.
+//!
+//! | step of Algorithm 1 | here |
+//! |---|---|
+//! | 1 post the receptions of the outer particles' new state | [`Halo::exchange`], before its first closure |
+//! | 2 fluxes of inner particles | [`Pass::flux`] in the first closure |
+//! | 3 update of inner particles | [`Pass::update`] in the first closure |
+//! | 4 send the new state of inner particles | [`HaloPlan::pack`], then the exchange posts the sends |
+//! | 5 fluxes of local particles | [`Pass::flux`] in the second closure, polling between pieces |
+//! | 6 update of local particles | [`Pass::update`] in the second closure |
+//! | 7 wait for the outer state | end of [`Halo::exchange`], then [`HaloPlan::unpack`] |
+//!
+//! Local particles still read the old state of inner ones in step 5, so what neighbours read is
+//! kept twice: a pass reads the `old` records and writes the `new` ones. What only the particle
+//! itself reads (its double-precision state) needs no second copy, which is also why a block may
+//! be updated as soon as its own fluxes are known, while its rates are in cache.
+
+use crate::block::{Block, FluidColumns};
+use crate::records::Record;
+use crate::team::Team;
+use bytemuck::Pod;
+use sph_decomp::{CommError, Communicator, Exposed, Halo, HaloPlan, Parts};
+use sph_kernels::Real;
+
+/// Pieces of the local particles between which messages are polled.
+const POLLS: usize = 16;
+
+/// What a pass computes and how the result enters the state.
+pub trait Pass<const D: usize, S: Real>: Sync {
+    /// Result of the flux loop per target.
+    type Rate: Copy + Send + Sync;
+    /// What a neighbouring rank needs to know of an updated particle.
+    type Message: Pod + Send + Sync;
+
+    /// Fluxes of the targets `first..first + rates.len()` from the old records.
+    fn flux(&self, first: usize, old: &[Record<S>], density: &[f64], rates: &mut [Self::Rate]);
+
+    /// New state of a block from its rates. `old` is indexed by particle like in `flux`.
+    fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Self::Rate>) -> Extremes;
+
+    /// Message about an inner particle after its update.
+    fn message(&self, new: &Record<S>, density: f64) -> Self::Message;
+
+    /// Enters the message about an outer particle into its records.
+    fn receive(&self, message: &Self::Message, old: &mut Record<S>, new: &mut Record<S>);
+}
+
+/// Largest values over the particles of a pass: what the time step and the watch for faults need.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremes {
+    /// Largest |v|², m²/s².
+    pub speed2: f64,
+    /// Largest |dv/dt|², m²/s⁴.
+    pub acceleration2: f64,
+    /// 1 when a particle has left the range of usable numbers, else 0.
+    pub fault: f64,
+}
+
+impl Extremes {
+    /// Of no particle.
+    pub const NONE: Self = Self { speed2: 0.0, acceleration2: 0.0, fault: 0.0 };
+
+    /// Of both sets of particles.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            speed2: self.speed2.max(other.speed2),
+            acceleration2: self.acceleration2.max(other.acceleration2),
+            fault: self.fault.max(other.fault),
+        }
+    }
+
+    /// As numbers for an all-reduce by maximum.
+    pub fn to_array(self) -> [f64; 3] {
+        [self.speed2, self.acceleration2, self.fault]
+    }
+
+    /// Back from [`to_array`](Self::to_array).
+    pub fn from_array([speed2, acceleration2, fault]: [f64; 3]) -> Self {
+        Self { speed2, acceleration2, fault }
+    }
+}
+
+/// Who takes part in a pass and over which connection.
+pub struct Exchange<'a, M: Pod> {
+    /// Ranks.
+    pub comm: &'a dyn Communicator,
+    /// Buffers for messages of this kind.
+    pub halo: &'a mut Halo<M>,
+    /// Who sends which particle to whom.
+    pub plan: &'a HaloPlan,
+    /// Values reduced by maximum over the ranks while the pass runs.
+    pub maxima: &'a mut [f64],
+}
+
+/// Runs one pass over the fluid particles of a rank, ordered `[local | inner | outer]`.
+///
+/// `old` and `new` hold records of all three parts, `columns` and `rates` belong to the owned ones.
+pub fn lio_pass<const D: usize, S: Real, P: Pass<D, S>>(
+    pass: &P,
+    team: &Team,
+    parts: &Parts,
+    exchange: Exchange<'_, P::Message>,
+    old: &mut [Record<S>],
+    columns: FluidColumns<'_, D>,
+    rates: &mut [P::Rate],
+    new: &mut [Record<S>],
+) -> Result<(Extremes, Exposed), CommError> {
+    let Exchange { comm, halo, plan, maxima } = exchange;
+    let (new, new_outer) = new.split_at_mut(parts.owned());
+    let (mut local, mut inner) = columns.block(rates, new).split_at(parts.local);
+    let (mut of_inner, mut of_local) = (Extremes::NONE, Extremes::NONE);
+    let old_now: &[Record<S>] = old;
+    // 1. The exchange posts the receptions before it calls the first closure.
+    let (received, exposed) = halo.exchange(
+        &comm,
+        plan,
+        maxima,
+        |send| {
+            // 2. and 3. Inner particles: fluxes with all three parts, then their update.
+            of_inner = team.advance(pass, old_now, &mut inner);
+            // 4. Their new state goes out; the old records stay for the local particles.
+            plan.pack(send, |i| {
+                let i = i as usize - parts.local;
+                pass.message(&inner.new[i], inner.density[i])
+            });
+        },
+        |progress| {
+            // 5. and 6. Local particles: they cannot see an outer record.
+            let visible = &old_now[..parts.owned()];
+            let piece = local.len().div_ceil(POLLS).max(1);
+            for mut piece in local.pieces(piece) {
+                of_local = of_local.max(team.advance(pass, visible, &mut piece));
+                progress.poll();
+            }
+        },
+    )?;
+    // 7. The outer state has arrived.
+    let old_outer = &mut old[parts.owned()..];
+    plan.unpack(received, |slot, message| {
+        pass.receive(message, &mut old_outer[slot], &mut new_outer[slot]);
+    });
+    Ok((of_inner.max(of_local), exposed))
+}

@@ -1,0 +1,67 @@
+//! The numbers of a run that every rank and every pass shares.
+
+use crate::eos::EquationOfState;
+use crate::records::Encoder;
+use crate::sweep::PairScale;
+use crate::timestep::StepLimits;
+
+/// Constants of a run in SI units; derived from the scene once and never changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model<const D: usize> {
+    /// Initial particle distance, m.
+    pub spacing: f64,
+    /// Support radius R, m.
+    pub support_radius: f64,
+    /// Width of the Verlet skin: lists hold pairs closer than R + skin, m.
+    pub skin: f64,
+    /// Gravity, m/s².
+    pub gravity: [f64; D],
+    /// Equation of state of the fluid.
+    pub equation_of_state: EquationOfState,
+    /// Limits of the time step.
+    pub limits: StepLimits,
+    /// Lower and upper corner of the box that particles may be in, m.
+    pub domain: ([f64; D], [f64; D]),
+    /// What happens to a particle outside of it.
+    pub on_lost: OnLost,
+}
+
+/// What to do with a particle that leaves the domain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OnLost {
+    /// End the run with an error.
+    Stop,
+    /// Take it out, count and report it.
+    Remove,
+}
+
+/// A speed beyond this multiple of the sound speed is no longer weakly compressible flow.
+const DIVERGED_MACH: f64 = 3.0;
+
+impl<const D: usize> Model<D> {
+    /// Writes records for this run.
+    pub fn encoder(&self) -> Encoder {
+        Encoder::new(self.support_radius, D)
+    }
+
+    /// Scale of the pairs.
+    pub fn scale(&self) -> PairScale {
+        PairScale { unit: self.encoder().unit(), support_radius: self.support_radius }
+    }
+
+    /// Speed above which the run has diverged, m/s.
+    pub fn speed_limit(&self) -> f64 {
+        DIVERGED_MACH * self.limits.sound_speed
+    }
+
+    /// Distance up to which lists and overlap zones reach, m.
+    pub fn reach(&self) -> f64 {
+        self.support_radius + self.skin
+    }
+
+    /// Whether a point is inside the domain. NaN is outside.
+    pub fn contains(&self, x: &[f64; D]) -> bool {
+        let (lower, upper) = &self.domain;
+        (0..D).all(|k| lower[k] <= x[k] && x[k] <= upper[k])
+    }
+}

@@ -1,0 +1,76 @@
+use crate::block::Block;
+use crate::lio::{Extremes, Pass};
+use crate::model::Model;
+use crate::passes::Surroundings;
+use crate::records::{QUANTITY, Record, VOLUME, motion, record};
+use crate::sweep::sweep;
+use crate::terms::{Deviation, PairTerm};
+use bytemuck::Pod;
+use sph_kernels::{Kernel, Real};
+use std::marker::PhantomData;
+
+/// Density at the new positions; leaves the pressure in the new records.
+#[derive(Debug)]
+pub struct DensityPass<'a, const D: usize, S, F, W, K> {
+    /// Neighbours and their terms.
+    pub around: Surroundings<'a, S, F, W>,
+    /// Constants.
+    pub model: &'a Model<D>,
+    /// Step from the old density to the new one, s.
+    pub dt: f64,
+    /// Kernel.
+    pub kernel: PhantomData<K>,
+}
+
+impl<const D: usize, S, F, W, K> Pass<D, S> for DensityPass<'_, D, S, F, W, K>
+where
+    S: Real + Pod,
+    F: PairTerm<D, Deviation>,
+    W: PairTerm<D, Deviation>,
+    K: Kernel,
+{
+    type Rate = f64;
+    /// Pressure, volume, density deviation.
+    type Message = [S; 3];
+
+    fn flux(&self, first: usize, old: &[Record<S>], density: &[f64], rates: &mut [f64]) {
+        let sources = self.around.sources(old);
+        sweep::<D, Deviation, K, S, _>(first, old, density, self.model.scale(), &sources, rates);
+    }
+
+    fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, f64>) -> Extremes {
+        let (eos, encoder) = (&self.model.equation_of_state, self.model.encoder());
+        let density0 = eos.density0();
+        let mut fault = 0.0;
+        let old = &old[block.first..][..block.len()];
+        for (k, old) in old.iter().enumerate() {
+            let mut density = block.density[k] + self.dt * block.rates[k];
+            if block.spray[k] && density < density0 {
+                density = density0;
+            }
+            // Written so that NaN is a fault too.
+            if !(density > 0.0 && density < f64::MAX) {
+                fault = 1.0;
+            }
+            block.density[k] = density;
+            block.new[k] = record(
+                motion(old),
+                S::from_f64(eos.pressure(density)),
+                encoder.volume(block.mass[k] / density),
+            );
+        }
+        Extremes { fault, ..Extremes::NONE }
+    }
+
+    fn message(&self, new: &Record<S>, density: f64) -> [S; 3] {
+        [new[QUANTITY], new[VOLUME], S::from_f64(density - self.model.equation_of_state.density0())]
+    }
+
+    fn receive(&self, message: &[S; 3], old: &mut Record<S>, new: &mut Record<S>) {
+        let [pressure, volume, deviation] = *message;
+        *new = record(motion(old), pressure, volume);
+        // The force pass moves outer particles but does not change their density, so that what the
+        // next density pass needs of it is entered now.
+        *old = record(motion(old), deviation, volume);
+    }
+}

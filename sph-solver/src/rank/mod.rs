@@ -1,0 +1,150 @@
+//! The particles of one rank in the layout that the passes work on.
+
+mod rebuild;
+mod traveller;
+
+use crate::block::FluidColumns;
+use crate::passes::Surroundings;
+use crate::records::Record;
+use crate::state::State;
+use crate::terms::Acceleration;
+use bytemuck::Pod;
+use sph_decomp::{Halo, HaloPlan, Orb, Parts};
+use sph_kernels::Real;
+use sph_neighbors::NeighborList;
+
+/// The particles of a rank.
+///
+/// Owned particles are columns of [`State`]: fluid first, then solids, each `[local | inner]`.
+/// Records hold `[local | inner | outer]` of the fluid, twice because a pass reads one copy and
+/// writes the other, and the solids with a last record of volume 0 that pads lists.
+#[derive(Debug, Clone, Default)]
+pub struct Rank<const D: usize, S: Real> {
+    /// Owned particles.
+    pub state: State<D>,
+    /// Layout of the fluid.
+    pub fluid: Parts,
+    /// Layout of the solids.
+    pub solid: Parts,
+    /// Fluid neighbours of the owned fluid particles.
+    pub near_fluid: NeighborList,
+    /// Solid neighbours of the owned fluid particles.
+    pub near_walls: NeighborList,
+    /// Which owned fluid particles are spray, see [`crate::spray`].
+    pub spray: Vec<bool>,
+    /// Acceleration of the owned fluid particles by pair forces (without gravity), m/s².
+    pub acceleration: Vec<Acceleration<D>>,
+    /// dρ/dt of the owned fluid particles, kg/m³/s.
+    pub density_rate: Vec<f64>,
+    /// Records with density deviations.
+    deviation: Vec<Record<S>>,
+    /// Records with pressures.
+    pressure: Vec<Record<S>>,
+    walls: Vec<Record<S>>,
+    plan: HaloPlan,
+    density_halo: Halo<[S; 3]>,
+    force_halo: Halo<[S; 6]>,
+    partition: Option<Orb<D>>,
+}
+
+/// What a pass needs of a rank, borrowed apart.
+pub struct Passing<'a, const D: usize, S> {
+    /// Fluid neighbours.
+    pub near_fluid: &'a NeighborList,
+    /// Solid neighbours.
+    pub near_walls: &'a NeighborList,
+    /// Records of solids.
+    pub walls: &'a [Record<S>],
+    /// Layout of the fluid.
+    pub parts: Parts,
+    /// Who sends what.
+    pub plan: &'a HaloPlan,
+    /// Columns of the owned fluid.
+    pub columns: FluidColumns<'a, D>,
+    /// Records with density deviations.
+    pub deviation: &'a mut [Record<S>],
+    /// Records with pressures.
+    pub pressure: &'a mut [Record<S>],
+    /// Results of the density pass.
+    pub density_rate: &'a mut [f64],
+    /// Results of the force pass.
+    pub acceleration: &'a mut [Acceleration<D>],
+    /// Buffers of the density pass.
+    pub density_halo: &'a mut Halo<[S; 3]>,
+    /// Buffers of the force pass.
+    pub force_halo: &'a mut Halo<[S; 6]>,
+}
+
+impl<'a, const D: usize, S> Passing<'a, D, S> {
+    /// The surroundings of the fluid with the terms of a pass.
+    pub fn surroundings<F, W>(&self, fluid: F, wall: W) -> Surroundings<'a, S, F, W> {
+        Surroundings {
+            near_fluid: self.near_fluid,
+            fluid,
+            walls: self.walls,
+            near_walls: self.near_walls,
+            wall,
+        }
+    }
+}
+
+impl<const D: usize, S: Real + Pod> Rank<D, S> {
+    /// Holds `state`; nothing is built yet.
+    pub fn new(state: State<D>) -> Self {
+        Self { state, ..Self::default() }
+    }
+
+    /// Everything that a pass needs.
+    pub fn passing(&mut self) -> Passing<'_, D, S> {
+        let n = self.fluid.owned();
+        Passing {
+            near_fluid: &self.near_fluid,
+            near_walls: &self.near_walls,
+            walls: &self.walls,
+            parts: self.fluid,
+            plan: &self.plan,
+            columns: FluidColumns {
+                position: &mut self.state.position[..n],
+                velocity: &mut self.state.velocity[..n],
+                density: &mut self.state.density[..n],
+                mass: &self.state.mass[..n],
+                spray: &self.spray,
+            },
+            deviation: &mut self.deviation,
+            pressure: &mut self.pressure,
+            density_rate: &mut self.density_rate,
+            acceleration: &mut self.acceleration,
+            density_halo: &mut self.density_halo,
+            force_halo: &mut self.force_halo,
+        }
+    }
+
+    /// The owned fluid particle with the lowest id whose numbers are out of range, if any.
+    pub fn faulty(&self, speed_limit: f64) -> Option<(u64, [f64; D])> {
+        let fits = |v: &[f64; D]| v.iter().map(|c| c * c).sum::<f64>() <= speed_limit * speed_limit;
+        let sound = |k: &usize| {
+            let state = &self.state;
+            let Acceleration(a) = &self.acceleration[*k];
+            let density = state.density[*k];
+            fits(&state.velocity[*k])
+                && a.iter().all(|c| c.is_finite())
+                && density > 0.0
+                && density.is_finite()
+        };
+        (0..self.fluid.owned())
+            .filter(|k| !sound(k))
+            .map(|k| (self.state.id[k], self.state.position[k]))
+            .min_by_key(|(id, _)| *id)
+    }
+
+    /// Bytes of particle data and lists on this rank.
+    pub fn bytes(&self) -> usize {
+        let record = size_of::<Record<S>>();
+        let column = 2 * size_of::<[f64; D]>() + 2 * 8 + 8 + 2;
+        self.state.len() * column
+            + (self.deviation.len() + self.pressure.len() + self.walls.len()) * record
+            + self.acceleration.len() * (size_of::<[f64; D]>() + 8)
+            + self.near_fluid.bytes()
+            + self.near_walls.bytes()
+    }
+}

@@ -1,0 +1,57 @@
+//! An outer particle on its way: the whole state as plain words.
+
+use crate::state::State;
+
+/// Bytes of one particle: eight-byte words of id, kind, mass, density, position and velocity.
+pub type Traveller = [u64; 10];
+
+/// Packs owned particle `i`.
+pub fn depart<const D: usize>(state: &State<D>, i: usize) -> Traveller {
+    const { assert!(D <= 3, "a traveller has room for three dimensions") };
+    let mut words = [0; 10];
+    words[0] = state.id[i];
+    words[1] = u64::from(state.kind[i]);
+    words[2] = state.mass[i].to_bits();
+    words[3] = state.density[i].to_bits();
+    for k in 0..D {
+        words[4 + k] = state.position[i][k].to_bits();
+        words[7 + k] = state.velocity[i][k].to_bits();
+    }
+    words
+}
+
+/// Id, kind and position of a packed particle: what its place in the order depends on.
+pub fn place<const D: usize>(words: &Traveller) -> (u64, u16, [f64; D]) {
+    (words[0], words[1] as u16, std::array::from_fn(|k| f64::from_bits(words[4 + k])))
+}
+
+/// Appends a packed particle.
+pub fn arrive<const D: usize>(words: &Traveller, state: &mut State<D>) {
+    let (id, kind, position) = place(words);
+    state.id.push(id);
+    state.kind.push(kind);
+    state.mass.push(f64::from_bits(words[2]));
+    state.density.push(f64::from_bits(words[3]));
+    state.position.push(position);
+    state.velocity.push(std::array::from_fn(|k| f64::from_bits(words[7 + k])));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_particle_arrives_as_it_left() {
+        let state = State {
+            id: vec![7],
+            kind: vec![3],
+            mass: vec![0.5],
+            density: vec![-0.0],
+            position: vec![[1.0, 2.0]],
+            velocity: vec![[3.0, f64::MIN_POSITIVE]],
+        };
+        let mut other = State::default();
+        arrive(&depart(&state, 0), &mut other);
+        assert_eq!(state, other);
+    }
+}

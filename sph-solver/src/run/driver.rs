@@ -1,0 +1,269 @@
+//! The loop of a run on one rank: steps, outputs, checkpoints.
+
+use super::checkpoints::{self, Progress};
+use super::digest::Digest;
+use super::files::Files;
+use super::gather::gather_by_id;
+use super::plan::RunPlan;
+use super::samples::{self, Budget};
+use super::schedule::Schedule;
+use crate::error::RunError;
+use crate::model::Model;
+use crate::physics::Physics;
+use crate::simulation::{Clock, FullStep, Lost, Simulation};
+use crate::state::{FLUID, State};
+use crate::team::Team;
+use crate::timings::Phase;
+use bytemuck::Pod;
+use sph_decomp::Communicator;
+use sph_kernels::{Kernel, Real};
+use std::time::{Duration, Instant};
+
+/// How far a run has come, for whoever watches it.
+#[derive(Debug, Clone, Copy)]
+pub struct Status {
+    /// Steps of the run.
+    pub step: u64,
+    /// Simulated time, s.
+    pub time: f64,
+    /// Time at which the run began or was resumed, s.
+    pub start: f64,
+    /// Time at which it ends, s.
+    pub end: f64,
+    /// Fluid particles times steps of this rank since the start.
+    pub particle_updates: u64,
+    /// Wall-clock time since the start.
+    pub elapsed: Duration,
+    /// Communication that was not hidden on this rank, s.
+    pub exposed_seconds: f64,
+}
+
+/// What the loop leaves behind on one rank.
+#[derive(Debug)]
+pub struct Finished<const D: usize> {
+    /// State at the end.
+    pub last: FullStep<D>,
+    /// Budget in the first report of this process and at the end.
+    pub budgets: (Budget<D>, Budget<D>),
+    /// Digest of the final state of all ranks.
+    pub digest: Digest,
+    /// Clock at the end.
+    pub clock: Clock,
+    /// Particles taken out, on all ranks, over the whole run.
+    pub lost: u64,
+    /// Snapshots written by this process.
+    pub snapshots: u64,
+    /// Time of the checkpoint that the run continued.
+    pub resumed_at: Option<f64>,
+    /// Wall-clock time of the loop.
+    pub elapsed: Duration,
+}
+
+/// Runs one rank to the end. Collective. `state` is the share of the initial particles of this
+/// rank; a resumed run drops it for that of the checkpoint.
+pub fn drive<'a, const D: usize, S, K, P>(
+    comm: &'a dyn Communicator,
+    team: Team,
+    model: Model<D>,
+    physics: P,
+    state: State<D>,
+    plan: &RunPlan<D>,
+    watch: &(dyn Fn(Status) + Sync),
+) -> Result<(Simulation<'a, D, S, K, P>, Finished<D>), RunError>
+where
+    S: Real + Pod,
+    K: Kernel,
+    P: Physics<D>,
+{
+    let start = Instant::now();
+    let restart = if plan.resume { checkpoints::load(comm, plan)? } else { None };
+    let (state, clock, progress) = match restart {
+        Some((state, clock, progress)) => (state, Some(clock), progress),
+        None => (state, None, Progress::START),
+    };
+    let resumed_at = clock.map(|clock| clock.time);
+    // Outputs of steps that the checkpoint has not seen yet are written again.
+    let written_until = resumed_at.map(|time| time.next_down());
+    let mut files = if comm.rank() == 0 { Some(Files::open(plan, written_until)?) } else { None };
+    let mut out = Outputs {
+        comm,
+        plan,
+        snapshots: Schedule::new(plan.snapshots).from(progress.next_snapshot),
+        samples: Schedule::new(plan.samples).from(progress.next_sample),
+        checkpoints: Schedule::new(plan.checkpoints).from(progress.next_checkpoint),
+        lost: progress.lost,
+        first_budget: None,
+    };
+    let mut simulation = Simulation::<D, S, K, P>::new(comm, team, model, physics, state, clock)?;
+    let begin = simulation.time();
+    if resumed_at.is_none() {
+        out.walls(&simulation, files.as_mut())?;
+    }
+    loop {
+        let time = simulation.time();
+        if simulation.lists_due() && out.checkpoints.due(time) {
+            out.checkpoint(&simulation)?;
+        }
+        let last = time >= plan.end_time;
+        let report = last || out.snapshots.due(time) || out.samples.due(time);
+        let full = simulation.step(report)?;
+        out.lost(&mut simulation, files.as_mut())?;
+        if let Some(full) = full {
+            let budget = out.report::<S, K, P>(&simulation, &full, last, files.as_mut())?;
+            if last {
+                let first = out.first_budget.unwrap_or(budget);
+                let finished = Finished {
+                    digest: digest(comm, &full)?,
+                    last: full,
+                    budgets: (first, budget),
+                    clock: simulation.clock()?,
+                    lost: out.lost,
+                    snapshots: files.map_or(0, |files| files.snapshots()),
+                    resumed_at,
+                    elapsed: start.elapsed(),
+                };
+                return Ok((simulation, finished));
+            }
+        }
+        watch(Status {
+            step: simulation.steps(),
+            time,
+            start: begin,
+            end: plan.end_time,
+            particle_updates: simulation.counters().particle_updates,
+            elapsed: start.elapsed(),
+            exposed_seconds: simulation.exposed().wait_seconds,
+        });
+    }
+}
+
+struct Outputs<'a, const D: usize> {
+    comm: &'a dyn Communicator,
+    plan: &'a RunPlan<D>,
+    snapshots: Schedule,
+    samples: Schedule,
+    checkpoints: Schedule,
+    lost: u64,
+    first_budget: Option<Budget<D>>,
+}
+
+impl<const D: usize> Outputs<'_, D> {
+    fn walls<S: Real + Pod, K: Kernel, P: Physics<D>>(
+        &self,
+        simulation: &Simulation<'_, D, S, K, P>,
+        files: Option<&mut Files>,
+    ) -> Result<(), RunError> {
+        if self.plan.snapshots.is_none() {
+            return Ok(());
+        }
+        let mut walls = simulation.state().clone();
+        let keep: Vec<u32> =
+            (0..walls.len() as u32).filter(|&i| walls.kind[i as usize] != FLUID).collect();
+        walls.keep(&keep);
+        let mut columns = walls.into_columns();
+        gather_by_id(self.comm, &mut columns, |columns| columns.0.clone())?;
+        let walls = State::from_columns(columns);
+        match files {
+            Some(files) if !walls.is_empty() => files.walls(&walls),
+            _ => Ok(()),
+        }
+    }
+
+    fn lost<S: Real + Pod, K: Kernel, P: Physics<D>>(
+        &mut self,
+        simulation: &mut Simulation<'_, D, S, K, P>,
+        files: Option<&mut Files>,
+    ) -> Result<(), RunError> {
+        // Particles are taken out in rebuilds only, on all ranks in the same step.
+        if !simulation.just_rebuilt() {
+            return Ok(());
+        }
+        let lost = simulation.take_lost();
+        let mut count = [lost.len() as u64];
+        self.comm.sum_u64(&mut count)?;
+        self.lost += count[0];
+        if count[0] == 0 {
+            return Ok(());
+        }
+        let mut columns = (
+            lost.iter().map(|one| one.id).collect::<Vec<_>>(),
+            lost.iter().map(|one| one.position).collect::<Vec<_>>(),
+            lost.iter().map(|one| one.time).collect::<Vec<_>>(),
+        );
+        gather_by_id(self.comm, &mut columns, |columns| columns.0.clone())?;
+        let Some(files) = files else { return Ok(()) };
+        let (id, position, time) = columns;
+        let all = id.iter().zip(position).zip(time);
+        let all = all.map(|((&id, position), time)| Lost { id, position, time });
+        files.lost(&all.collect::<Vec<_>>())
+    }
+
+    fn checkpoint<S: Real + Pod, K: Kernel, P: Physics<D>>(
+        &mut self,
+        simulation: &Simulation<'_, D, S, K, P>,
+    ) -> Result<(), RunError> {
+        let _timer = simulation.timings().measure(Phase::Output);
+        // Also makes sure that no rank has met a fault: a bad state never becomes a checkpoint.
+        let clock = simulation.clock()?;
+        self.checkpoints.done(clock.time);
+        let progress = Progress {
+            next_snapshot: self.snapshots.next(),
+            next_sample: self.samples.next(),
+            next_checkpoint: self.checkpoints.next(),
+            lost: self.lost,
+        };
+        checkpoints::save(self.comm, self.plan, simulation.state(), clock, progress)
+    }
+
+    fn report<S: Real + Pod, K: Kernel, P: Physics<D>>(
+        &mut self,
+        simulation: &Simulation<'_, D, S, K, P>,
+        full: &FullStep<D>,
+        last: bool,
+        mut files: Option<&mut Files>,
+    ) -> Result<Budget<D>, RunError> {
+        let _timer = simulation.timings().measure(Phase::Output);
+        // A fault in this very step is not known to the other ranks yet.
+        simulation.clock()?;
+        let model = simulation.model();
+        let budget = samples::budget(self.comm, model, full)?;
+        self.first_budget.get_or_insert(budget);
+        if last || self.samples.due(full.time) {
+            let read = |(_, probe)| samples::read::<D, K>(self.comm, model, full, probe);
+            let probes = self.plan.probes.iter().map(|(name, probe)| (name, probe));
+            let readings = probes.map(read).collect::<Result<Vec<_>, _>>()?;
+            if let Some(files) = files.as_deref_mut() {
+                files.samples(full.time, &budget, &readings)?;
+            }
+            self.samples.done(full.time);
+        }
+        if self.plan.snapshots.is_some() && (last || self.snapshots.due(full.time)) {
+            let mut columns = (
+                full.id.clone(),
+                full.position.clone(),
+                full.velocity.clone(),
+                full.density.clone(),
+            );
+            gather_by_id(self.comm, &mut columns, |columns| columns.0.clone())?;
+            if let Some(files) = files {
+                let (id, position, velocity, density) = columns;
+                let all = FullStep { id, position, velocity, density, mass: vec![], ..*full };
+                files.snapshot(model, &all)?;
+            }
+            self.snapshots.done(full.time);
+        }
+        Ok(budget)
+    }
+}
+
+/// Digest of the fluid of all ranks.
+fn digest<const D: usize>(comm: &dyn Communicator, full: &FullStep<D>) -> Result<Digest, RunError> {
+    let mut digest = Digest::default();
+    for (i, &id) in full.id.iter().enumerate() {
+        let words = full.position[i].into_iter().chain(full.velocity[i]);
+        digest.add(id, words.chain([full.density[i]]));
+    }
+    let all = comm.all_gather(&digest.to_bytes())?;
+    let parts = all.iter().filter_map(|bytes| bytes.as_slice().try_into().ok());
+    Ok(parts.map(Digest::from_bytes).fold(Digest::default(), Digest::merge))
+}

@@ -1,0 +1,71 @@
+//! Output times.
+
+/// Every so many seconds: due at the first step at or after each multiple of the interval. Steps
+/// are never shortened to meet a time, so that outputs do not change the result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Schedule {
+    interval: f64,
+    next: u64,
+}
+
+impl Schedule {
+    /// Every `interval` seconds from 0 on; never when it is `None`.
+    pub fn new(interval: Option<f64>) -> Self {
+        Self { interval: interval.unwrap_or(f64::INFINITY), next: 0 }
+    }
+
+    /// Number of the next output, for a checkpoint.
+    pub fn next(&self) -> u64 {
+        self.next
+    }
+
+    /// The same schedule, going on with output number `next`.
+    #[must_use]
+    pub fn from(self, next: u64) -> Self {
+        Self { next, ..self }
+    }
+
+    /// Skips output 0, the one at the start.
+    #[must_use]
+    pub fn after_start(self) -> Self {
+        self.from(1)
+    }
+
+    /// Whether an output is due at `time` (s).
+    pub fn due(&self, time: f64) -> bool {
+        // Infinity times zero is NaN, which compares as not due.
+        time >= self.next as f64 * self.interval
+    }
+
+    /// Notes that the output due at `time` was made; outputs missed by a long step are skipped.
+    pub fn done(&mut self, time: f64) {
+        while self.due(time) {
+            self.next += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_multiple_once_even_when_a_step_skips_some() {
+        let mut schedule = Schedule::new(Some(0.1));
+        let mut made = Vec::new();
+        for time in [0.0, 0.04, 0.1, 0.15, 0.42, 0.45, 0.5] {
+            if schedule.due(time) {
+                schedule.done(time);
+                made.push(time);
+            }
+        }
+        assert_eq!(made, [0.0, 0.1, 0.42, 0.5]);
+        assert_eq!(schedule.next(), 6);
+    }
+
+    #[test]
+    fn never_is_never() {
+        assert!(!Schedule::new(None).due(0.0));
+        assert!(!Schedule::new(None).due(1e9));
+    }
+}

@@ -1,0 +1,241 @@
+//! `summary.json`: what a run did and what it cost.
+
+use super::cpu_time::cpu_seconds;
+use super::driver::Finished;
+use super::samples::Budget;
+use crate::error::RunError;
+use crate::physics::Physics;
+use crate::simulation::Simulation;
+use crate::timings::Phase;
+use bytemuck::Pod;
+use serde::Serialize;
+use sph_decomp::Communicator;
+use sph_kernels::{Kernel, Real};
+
+/// What the caller of a run knows about it.
+#[derive(Debug, Clone)]
+pub struct Meta {
+    /// Name of the scene.
+    pub name: String,
+    /// "mixed" or "double".
+    pub precision: &'static str,
+    /// "solo", "threads" or "mpi".
+    pub communicator: &'static str,
+    /// Whether all ranks are in this process, so that its CPU time counts once.
+    pub one_process: bool,
+}
+
+/// Results and cost of a run. Times are of the slowest rank, counts of all ranks.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// Name of the scene.
+    pub name: String,
+    /// Version of the program.
+    pub version: &'static str,
+    /// Dimension.
+    pub dimension: usize,
+    /// "mixed" or "double".
+    pub precision: &'static str,
+    /// Vector unit that the sweeps used.
+    pub simd: &'static str,
+    /// Number of ranks.
+    pub ranks: usize,
+    /// "solo", "threads" or "mpi".
+    pub communicator: &'static str,
+    /// Threads per rank.
+    pub threads: usize,
+    /// Particles by kind at the end.
+    pub particles: Particles,
+    /// Steps made, those before a restart included.
+    pub steps: u64,
+    /// Simulated time at the end, s.
+    pub simulated_time: f64,
+    /// Last time step, s.
+    pub time_step: f64,
+    /// Wall-clock seconds of the stepping, output included.
+    pub wall_seconds: f64,
+    /// CPU seconds of all threads of all ranks since the program began, where the system tells.
+    pub cpu_seconds: Option<f64>,
+    /// Seconds by phase, of the rank that spent most on it.
+    pub phases: Phases,
+    /// Fluid particles times steps per second, over all ranks.
+    pub particle_updates_per_second: f64,
+    /// Pairs evaluated in both passes per second, over all ranks; list entries in the skin count.
+    pub pair_interactions_per_second: f64,
+    /// List entries per fluid particle, skin included.
+    pub neighbours_per_particle: f64,
+    /// Steps between two list rebuilds.
+    pub steps_per_rebuild: f64,
+    /// Steps in which a particle had moved farther than the lists allow for.
+    pub stale_steps: u64,
+    /// Bytes of particle data and lists per particle.
+    pub bytes_per_particle: f64,
+    /// Communication that was not hidden, s, of the rank with most.
+    pub exposed_seconds: f64,
+    /// Received copies of fluid particles divided by owned ones at the end.
+    pub halo_redundancy: f64,
+    /// Local, inner and outer fluid particles of each rank at the end.
+    pub local_inner_outer: Vec<[usize; 3]>,
+    /// Largest over mean time in the two passes, exposed communication left out.
+    pub imbalance: f64,
+    /// Energies at the start of this process and at the end, J.
+    pub energies: Energies,
+    /// Momentum at the end, kg m/s.
+    pub momentum: Vec<f64>,
+    /// Largest |ρ/ρ0 − 1| at the end.
+    pub compression: f64,
+    /// Particles taken out because they left the domain.
+    pub lost_particles: u64,
+    /// Snapshots written by this process.
+    pub snapshots: u64,
+    /// Time at which this process took over from a checkpoint, s.
+    pub resumed_at: Option<f64>,
+    /// Hash of the final state ordered by id: equal digests mean equal bits.
+    pub state_digest: String,
+}
+
+/// Particles by kind.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Particles {
+    /// Fluid particles.
+    pub fluid: u64,
+    /// Wall particles.
+    pub wall: u64,
+}
+
+/// Seconds by phase.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Phases {
+    /// Migration, overlap zone, sorting and lists.
+    pub rebuild: f64,
+    /// Density passes.
+    pub density: f64,
+    /// Force passes.
+    pub force: f64,
+    /// Snapshots, tables, checkpoints.
+    pub output: f64,
+}
+
+/// Energies at two times.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Energies {
+    /// When this process began.
+    pub start: Energy,
+    /// At the end.
+    pub end: Energy,
+}
+
+/// Energies of the fluid, J (J/m in two dimensions).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Energy {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Potential energy in gravity, zero at the origin.
+    pub potential: f64,
+    /// Elastic energy.
+    pub elastic: f64,
+}
+
+/// Puts the summary together from all ranks. Collective; the same on all of them but for CPU time.
+pub fn summarize<const D: usize, S, K, P>(
+    comm: &dyn Communicator,
+    simulation: &Simulation<'_, D, S, K, P>,
+    finished: &Finished<D>,
+    meta: Meta,
+) -> Result<Summary, RunError>
+where
+    S: Real + Pod,
+    K: Kernel,
+    P: Physics<D>,
+{
+    let rank = simulation.rank();
+    let counters = simulation.counters();
+    let (fluid, solid) = (rank.fluid, rank.solid);
+    let mut counts = [
+        fluid.owned() as u64,
+        solid.owned() as u64,
+        counters.particle_updates,
+        counters.pairs,
+        rank.bytes() as u64,
+        fluid.outer as u64,
+        rank.near_fluid.pairs() + rank.near_walls.pairs(),
+    ];
+    comm.sum_u64(&mut counts)?;
+    let [fluid_count, wall_count, updates, pairs, bytes, outer, near] = counts.map(|n| n as f64);
+
+    let timings = simulation.timings();
+    let exposed = simulation.exposed().wait_seconds;
+    let passes = timings.seconds(Phase::Density) + timings.seconds(Phase::Force);
+    let work = (passes - exposed).max(0.0);
+    let mut slowest = [
+        finished.elapsed.as_secs_f64(),
+        timings.seconds(Phase::Rebuild),
+        timings.seconds(Phase::Density),
+        timings.seconds(Phase::Force),
+        timings.seconds(Phase::Output),
+        exposed,
+        work,
+    ];
+    comm.max_f64(&mut slowest)?;
+    let [wall_seconds, rebuild, density, force, output, exposed_seconds, most_work] = slowest;
+
+    let row = [fluid.local as u64, fluid.inner as u64, fluid.outer as u64, work.to_bits()];
+    let rows = comm.all_gather(bytemuck::cast_slice(&row))?;
+    let rows: Vec<[u64; 4]> =
+        rows.iter().filter_map(|bytes| bytemuck::try_pod_read_unaligned(bytes).ok()).collect();
+    let mean_work = rows.iter().map(|row| f64::from_bits(row[3])).sum::<f64>() / rows.len() as f64;
+
+    let mine = if meta.one_process && comm.rank() > 0 { Some(0.0) } else { cpu_seconds() };
+    let all = comm.all_gather(&mine.unwrap_or(f64::NAN).to_ne_bytes())?;
+    let cpu: f64 = all
+        .iter()
+        .filter_map(|bytes| bytes.as_slice().try_into().ok().map(f64::from_ne_bytes))
+        .sum();
+
+    let loop_seconds = rebuild + density + force;
+    let (first, last) = &finished.budgets;
+    Ok(Summary {
+        name: meta.name,
+        version: env!("CARGO_PKG_VERSION"),
+        dimension: D,
+        precision: meta.precision,
+        simd: sph_kernels::simd_level(),
+        ranks: comm.size(),
+        communicator: meta.communicator,
+        threads: simulation.threads(),
+        particles: Particles { fluid: counts[0], wall: counts[1] },
+        steps: finished.last.step,
+        simulated_time: finished.last.time,
+        time_step: finished.clock.dt,
+        wall_seconds,
+        cpu_seconds: cpu.is_finite().then_some(cpu),
+        phases: Phases { rebuild, density, force, output },
+        particle_updates_per_second: updates / loop_seconds,
+        pair_interactions_per_second: pairs / (density + force),
+        neighbours_per_particle: near / fluid_count,
+        steps_per_rebuild: counters.steps as f64 / counters.rebuilds as f64,
+        stale_steps: counters.stale_steps,
+        bytes_per_particle: bytes / (fluid_count + wall_count),
+        exposed_seconds,
+        halo_redundancy: outer / fluid_count,
+        local_inner_outer: rows
+            .iter()
+            .map(|row| [row[0] as usize, row[1] as usize, row[2] as usize])
+            .collect(),
+        imbalance: if mean_work > 0.0 { most_work / mean_work } else { 1.0 },
+        energies: Energies { start: Energy::of(first), end: Energy::of(last) },
+        momentum: last.momentum.to_vec(),
+        compression: last.compression,
+        lost_particles: finished.lost,
+        snapshots: finished.snapshots,
+        resumed_at: finished.resumed_at,
+        state_digest: finished.digest.to_string(),
+    })
+}
+
+impl Energy {
+    fn of<const D: usize>(budget: &Budget<D>) -> Self {
+        let Budget { kinetic, potential, elastic, .. } = *budget;
+        Self { kinetic, potential, elastic }
+    }
+}

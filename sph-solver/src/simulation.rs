@@ -1,0 +1,419 @@
+//! A simulation: the particles of one rank and the loop over the steps.
+
+use crate::error::RunError;
+use crate::lio::{Exchange, Extremes, lio_pass};
+use crate::model::{Model, OnLost};
+use crate::passes::{DensityPass, ForcePass, kicked};
+use crate::physics::Physics;
+use crate::rank::Rank;
+use crate::state::State;
+use crate::team::Team;
+use crate::terms::Acceleration;
+use crate::timestep::Skin;
+use crate::timings::{Phase, Timings};
+use bytemuck::Pod;
+use sph_decomp::{Communicator, Exposed};
+use sph_kernels::{Kernel, Real};
+use std::marker::PhantomData;
+
+/// Where a run is between two steps, and what the next step needs besides the particles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clock {
+    /// Number of finished steps.
+    pub step: u64,
+    /// Time of the positions, s.
+    pub time: f64,
+    /// Step that led to the present positions, s; 0 at the start.
+    pub dt: f64,
+    /// Largest speed and acceleration of the last force pass, over all ranks.
+    pub extremes: Extremes,
+}
+
+/// Fluid particles of this rank at a full step, with everything at the same time.
+#[derive(Debug, Clone)]
+pub struct FullStep<const D: usize> {
+    /// Time, s.
+    pub time: f64,
+    /// Number of the step.
+    pub step: u64,
+    /// Global ids.
+    pub id: Vec<u64>,
+    /// Masses, kg.
+    pub mass: Vec<f64>,
+    /// Positions, m.
+    pub position: Vec<[f64; D]>,
+    /// Velocities, m/s.
+    pub velocity: Vec<[f64; D]>,
+    /// Densities, kg/m³.
+    pub density: Vec<f64>,
+}
+
+/// A particle that was taken out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lost<const D: usize> {
+    /// Global id.
+    pub id: u64,
+    /// Where it was, m.
+    pub position: [f64; D],
+    /// When, s.
+    pub time: f64,
+}
+
+/// What a run counts besides time.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Counters {
+    /// Steps made by this process (not by the runs it continues).
+    pub steps: u64,
+    /// Fluid particles of this rank, summed over those steps.
+    pub particle_updates: u64,
+    /// Pairs in the lists of this rank (true ones and those in the skin), summed over both passes.
+    pub pairs: u64,
+    /// List rebuilds.
+    pub rebuilds: u64,
+    /// Steps in which a particle had moved farther than the lists allow for.
+    pub stale_steps: u64,
+}
+
+/// One rank of a run.
+pub struct Simulation<'a, const D: usize, S: Real, K, P> {
+    comm: &'a dyn Communicator,
+    team: Team,
+    model: Model<D>,
+    physics: P,
+    rank: Rank<D, S>,
+    clock: Clock,
+    skin: Skin,
+    /// Extremes of the last passes of this rank, not yet known to the others.
+    pending: Extremes,
+    lists_due: bool,
+    just_rebuilt: bool,
+    lost: Vec<Lost<D>>,
+    counters: Counters,
+    exposed: Exposed,
+    timings: Timings,
+    kernel: PhantomData<K>,
+}
+
+impl<'a, const D: usize, S, K, P> Simulation<'a, D, S, K, P>
+where
+    S: Real + Pod,
+    K: Kernel,
+    P: Physics<D>,
+{
+    /// Starts from the particles in `state`, which may lie on any rank. `clock` is that of a
+    /// checkpoint, or `None` for a new run.
+    pub fn new(
+        comm: &'a dyn Communicator,
+        team: Team,
+        model: Model<D>,
+        physics: P,
+        state: State<D>,
+        clock: Option<Clock>,
+    ) -> Result<Self, RunError> {
+        let clock = match clock {
+            Some(clock) => clock,
+            None => {
+                Clock { step: 0, time: 0.0, dt: 0.0, extremes: at_start(comm, &model, &state)? }
+            }
+        };
+        let skin = Skin::new(model.skin);
+        Ok(Self {
+            comm,
+            team,
+            physics,
+            rank: Rank::new(state),
+            clock,
+            skin,
+            pending: clock.extremes,
+            lists_due: true,
+            just_rebuilt: false,
+            lost: Vec::new(),
+            counters: Counters::default(),
+            exposed: Exposed::default(),
+            timings: Timings::default(),
+            model,
+            kernel: PhantomData,
+        })
+    }
+
+    /// Whether the next step begins with new lists: the moment when a checkpoint can be taken,
+    /// because whoever starts from the state then builds the same lists.
+    pub fn lists_due(&self) -> bool {
+        self.lists_due
+    }
+
+    /// The clock that goes with [`state`](Self::state). Collective.
+    pub fn clock(&self) -> Result<Clock, RunError> {
+        let mut maxima = self.pending.to_array();
+        self.comm.max_f64(&mut maxima)?;
+        let extremes = Extremes::from_array(maxima);
+        self.stop_at_fault(extremes)?;
+        Ok(Clock { extremes, ..self.clock })
+    }
+
+    /// State of the particles of this rank between two steps: positions of the present time,
+    /// velocities half a step behind it, densities of the time before.
+    pub fn state(&self) -> &State<D> {
+        &self.rank.state
+    }
+
+    /// Time of the present positions, s: the next step ends there.
+    pub fn time(&self) -> f64 {
+        self.clock.time
+    }
+
+    /// Constants of the run.
+    pub fn model(&self) -> &Model<D> {
+        &self.model
+    }
+
+    /// Number of finished steps.
+    pub fn steps(&self) -> u64 {
+        self.clock.step
+    }
+
+    /// Whether the last step began with a rebuild, which is when particles are taken out.
+    pub fn just_rebuilt(&self) -> bool {
+        self.just_rebuilt
+    }
+
+    /// Particles of this rank that were taken out since the last call.
+    pub fn take_lost(&mut self) -> Vec<Lost<D>> {
+        std::mem::take(&mut self.lost)
+    }
+
+    /// What was counted on this rank.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// Communication that was not hidden on this rank.
+    pub fn exposed(&self) -> Exposed {
+        self.exposed
+    }
+
+    /// Seconds by phase on this rank.
+    pub fn timings(&self) -> &Timings {
+        &self.timings
+    }
+
+    /// The rank itself: layout and lists, for reports.
+    pub fn rank(&self) -> &Rank<D, S> {
+        &self.rank
+    }
+
+    /// Number of threads of this rank.
+    pub fn threads(&self) -> usize {
+        self.team.threads()
+    }
+
+    /// Completes the step that ends at the present time and moves on to the next positions. With
+    /// `report`, also returns the state at the present time. Collective.
+    pub fn step(&mut self, report: bool) -> Result<Option<FullStep<D>>, RunError> {
+        self.just_rebuilt = self.lists_due;
+        if self.lists_due {
+            self.rebuild()?;
+        }
+        let extremes = self.density_pass()?;
+        self.stop_at_fault(extremes)?;
+        let dt_before = self.clock.dt;
+        let dt = self.choose_step(extremes)?;
+        let staged = report.then(|| self.stage());
+        self.force_pass(dt_before, dt)?;
+        let full_step = staged.map(|staged| self.complete(staged, dt_before));
+        self.counters.steps += 1;
+        let fluid = self.rank.fluid.owned();
+        self.counters.particle_updates += fluid as u64;
+        self.counters.pairs += 2 * (self.rank.near_fluid.pairs() + self.rank.near_walls.pairs());
+        self.clock.step += 1;
+        self.clock.time += dt;
+        self.clock.dt = dt;
+        Ok(full_step)
+    }
+
+    fn rebuild(&mut self) -> Result<(), RunError> {
+        let _timer = self.timings.measure(Phase::Rebuild);
+        let rebalance = self.counters.rebuilds.is_multiple_of(REBUILDS_PER_BALANCE);
+        let gone =
+            self.rank.rebuild(self.comm, &self.team, &self.model, P::has_walls(), rebalance)?;
+        let time = self.clock.time;
+        self.lost.extend(gone.iter().map(|&(id, position)| Lost { id, position, time }));
+        if self.model.on_lost == OnLost::Stop {
+            let first = gone.iter().min_by_key(|(id, _)| *id);
+            if let Some((id, position)) = first_of_all(self.comm, first)? {
+                let position = position.to_vec();
+                let (lower, upper) = self.model.domain;
+                let (lower, upper) = (lower.to_vec(), upper.to_vec());
+                return Err(RunError::Left { id, position, time, lower, upper });
+            }
+        }
+        self.skin.renew();
+        self.lists_due = false;
+        self.counters.rebuilds += 1;
+        Ok(())
+    }
+
+    fn density_pass(&mut self) -> Result<Extremes, RunError> {
+        let _timer = self.timings.measure(Phase::Density);
+        let rank = &mut self.rank;
+        let (fluid, wall) = self.physics.density();
+        let mut maxima = self.pending.to_array();
+        let view = rank.passing();
+        let pass = DensityPass::<D, S, _, _, K> {
+            around: view.surroundings(fluid, wall),
+            model: &self.model,
+            dt: self.clock.dt,
+            kernel: PhantomData,
+        };
+        let exchange = Exchange {
+            comm: self.comm,
+            halo: view.density_halo,
+            plan: view.plan,
+            maxima: &mut maxima,
+        };
+        let (own, exposed) = lio_pass(
+            &pass,
+            &self.team,
+            &view.parts,
+            exchange,
+            view.deviation,
+            view.columns,
+            view.density_rate,
+            view.pressure,
+        )?;
+        self.exposed += exposed;
+        self.pending = Extremes { fault: own.fault, ..Extremes::NONE };
+        Ok(Extremes::from_array(maxima))
+    }
+
+    fn force_pass(&mut self, dt_before: f64, dt: f64) -> Result<(), RunError> {
+        let _timer = self.timings.measure(Phase::Force);
+        let rank = &mut self.rank;
+        let (fluid, wall) = self.physics.force();
+        let view = rank.passing();
+        let pass = ForcePass::<D, S, _, _, K> {
+            around: view.surroundings(fluid, wall),
+            model: &self.model,
+            dt_before,
+            dt,
+            kernel: PhantomData,
+        };
+        let exchange =
+            Exchange { comm: self.comm, halo: view.force_halo, plan: view.plan, maxima: &mut [] };
+        let (own, exposed) = lio_pass(
+            &pass,
+            &self.team,
+            &view.parts,
+            exchange,
+            view.pressure,
+            view.columns,
+            view.acceleration,
+            view.deviation,
+        )?;
+        self.exposed += exposed;
+        self.pending = self.pending.max(own);
+        Ok(())
+    }
+
+    /// The next step, and whether it uses up the skin. `extremes` are those of the last force pass:
+    /// one step old, so that their reduction could hide behind the density pass.
+    fn choose_step(&mut self, extremes: Extremes) -> Result<f64, RunError> {
+        let speed = extremes.speed2.sqrt();
+        let acceleration = extremes.acceleration2.sqrt();
+        self.skin.moved(self.clock.dt, speed);
+        let dt = self.model.limits.step(extremes);
+        let calm = self.model.limits.step(Extremes::NONE);
+        // Written so that NaN is refused too.
+        if !(dt > SMALLEST_STEP * calm) {
+            return Err(RunError::StepCollapsed {
+                step: self.clock.step,
+                time: self.clock.time,
+                dt,
+            });
+        }
+        self.counters.stale_steps += u64::from(self.skin.exceeded());
+        // The kick before the coming drift is not known yet; twice the last one bounds it but in
+        // an impact, where a stale step is counted and harmless: the kernel's slope vanishes at R.
+        let ahead = speed + acceleration * (self.clock.dt + dt);
+        self.lists_due = self.skin.would_exceed(dt, ahead);
+        Ok(dt)
+    }
+
+    fn stage(&self) -> FullStep<D> {
+        let n = self.rank.fluid.owned();
+        let state = &self.rank.state;
+        FullStep {
+            time: self.clock.time,
+            step: self.clock.step,
+            id: state.id[..n].to_vec(),
+            mass: state.mass[..n].to_vec(),
+            position: state.position[..n].to_vec(),
+            velocity: state.velocity[..n].to_vec(),
+            density: state.density[..n].to_vec(),
+        }
+    }
+
+    /// Brings staged velocities to the full step, with the arithmetic of the force pass itself.
+    fn complete(&self, mut staged: FullStep<D>, dt_before: f64) -> FullStep<D> {
+        for (v, Acceleration(a)) in staged.velocity.iter_mut().zip(&self.rank.acceleration) {
+            *v = kicked(*v, 0.5 * dt_before, *a, self.model.gravity);
+        }
+        staged
+    }
+
+    /// Ends the run on all ranks with the same message when any particle of any rank is faulty.
+    fn stop_at_fault(&self, extremes: Extremes) -> Result<(), RunError> {
+        if extremes.fault == 0.0 {
+            return Ok(());
+        }
+        let first = self.rank.faulty(self.model.speed_limit());
+        match first_of_all(self.comm, first.as_ref())? {
+            Some((id, position)) => Err(RunError::Diverged {
+                id,
+                position: position.to_vec(),
+                step: self.clock.step,
+                time: self.clock.time,
+            }),
+            None => Err(RunError::StepCollapsed {
+                step: self.clock.step,
+                time: self.clock.time,
+                dt: f64::NAN,
+            }),
+        }
+    }
+}
+
+/// Rebuilds between two partitions of space.
+const REBUILDS_PER_BALANCE: u64 = 20;
+
+/// A step this much shorter than the acoustic one means that the run has failed.
+const SMALLEST_STEP: f64 = 1e-5;
+
+fn at_start<const D: usize>(
+    comm: &dyn Communicator,
+    model: &Model<D>,
+    state: &State<D>,
+) -> Result<Extremes, RunError> {
+    let square = |v: &[f64; D]| v.iter().map(|c| c * c).sum::<f64>();
+    let mut speed2 = [state.velocity.iter().map(square).fold(0.0, f64::max)];
+    comm.max_f64(&mut speed2)?;
+    Ok(Extremes { speed2: speed2[0], acceleration2: square(&model.gravity), fault: 0.0 })
+}
+
+/// The particle with the lowest id over all ranks, from the one that each rank names.
+fn first_of_all<const D: usize>(
+    comm: &dyn Communicator,
+    mine: Option<&(u64, [f64; D])>,
+) -> Result<Option<(u64, [f64; D])>, RunError> {
+    let mut bytes = Vec::new();
+    if let Some((id, x)) = mine {
+        bytes.extend_from_slice(&id.to_ne_bytes());
+        bytes.extend_from_slice(bytemuck::cast_slice(x));
+    }
+    let all = comm.all_gather(&bytes)?;
+    let named = all.iter().filter(|bytes| !bytes.is_empty()).map(|bytes| {
+        let (id, x) = bytes.split_at(8);
+        (bytemuck::pod_read_unaligned(id), bytemuck::pod_read_unaligned(x))
+    });
+    Ok(named.min_by_key(|(id, _): &(u64, [f64; D])| *id))
+}

@@ -1,0 +1,67 @@
+//! The state of the particles that a rank owns: what is integrated, migrated and checkpointed.
+
+use sph_decomp::Columns;
+
+/// Kind of the fluid particles; solid k of the scene has kind 1 + k.
+pub const FLUID: u16 = 0;
+
+/// Structure of arrays over owned particles: fluid first, then solids.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct State<const D: usize> {
+    /// Global id.
+    pub id: Vec<u64>,
+    /// [`FLUID`] or 1 + number of the solid.
+    pub kind: Vec<u16>,
+    /// Mass, kg.
+    pub mass: Vec<f64>,
+    /// Density, kg/m³.
+    pub density: Vec<f64>,
+    /// Position, m.
+    pub position: Vec<[f64; D]>,
+    /// Velocity, m/s; half a step behind or ahead of the positions, see [`crate::passes`].
+    pub velocity: Vec<[f64; D]>,
+}
+
+impl<const D: usize> State<D> {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.id.is_empty()
+    }
+
+    /// All columns, to sort, send and receive particles.
+    pub fn columns(&mut self) -> impl Columns + '_ {
+        (
+            &mut self.id,
+            &mut self.kind,
+            &mut self.mass,
+            &mut self.density,
+            &mut self.position,
+            &mut self.velocity,
+        )
+    }
+
+    /// Keeps the particles named by `index`, in that order.
+    pub fn keep(&mut self, index: &[u32]) {
+        self.columns().permute(index);
+    }
+
+    /// The columns themselves, ids first.
+    pub fn into_columns(self) -> StateColumns<D> {
+        (self.id, self.kind, self.mass, self.density, self.position, self.velocity)
+    }
+
+    /// Back from [`into_columns`](Self::into_columns).
+    pub fn from_columns(columns: StateColumns<D>) -> Self {
+        let (id, kind, mass, density, position, velocity) = columns;
+        Self { id, kind, mass, density, position, velocity }
+    }
+}
+
+/// Ids, kinds, masses, densities, positions, velocities.
+pub type StateColumns<const D: usize> =
+    (Vec<u64>, Vec<u16>, Vec<f64>, Vec<f64>, Vec<[f64; D]>, Vec<[f64; D]>);

@@ -1,0 +1,47 @@
+use super::{Pair, PairTerm, Pressure, Source, Sum, Target, dot, lanes};
+use sph_kernels::Lanes;
+
+/// Artificial viscosity of the inviscid scheme:
+/// dv_i/dt += α h c0 (ρ0/ρ_i) Σ_j π_ij ∇W_ij V_j, π_ij = (v_j − v_i)·r_ji / (|r_ij|² + 0.01 h²).
+///
+/// Source: Antuono, Colagrossi, Marrone & Molteni (2010), eq. 3–5; Marrone et al. (2011), Comput.
+/// Methods Appl. Mech. Eng. 200, eq. 3. It acts on approaching and receding pairs alike.
+#[derive(Debug, Clone, Copy)]
+pub struct ArtificialViscosity {
+    /// α h c0 ρ0, kg/(m s).
+    pub strength: f64,
+    /// 0.01 h², m²: keeps coincident particles finite.
+    pub softening: f64,
+}
+
+impl<const D: usize> PairTerm<D, Pressure> for ArtificialViscosity {
+    #[inline(always)]
+    fn add<L: Lanes>(
+        &self,
+        i: &Target<D, L>,
+        j: &Source<D, L>,
+        pair: &Pair<D, L>,
+        sum: &mut Sum<D, L>,
+    ) {
+        // (v_j − v_i)·r_ji = (v_i − v_j)·r_ij.
+        let rate = dot(&j.approach, &pair.offset).div(pair.distance2 + lanes(self.softening));
+        let factor = rate * pair.slope_volume * lanes(self.strength);
+        sum.push(factor * i.inverse_density, pair);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terms::scalar;
+
+    #[test]
+    fn it_slows_an_approach() {
+        // i moves towards j at +x: the acceleration of i must point back.
+        let (i, j, p) = scalar::pair([-0.1, 0.0], ([2.0, 0.0], [0.0; 2]), (0.0, 0.0), 0.01, -50.0);
+        let mut sum = Sum::zero();
+        ArtificialViscosity { strength: 1.0, softening: 0.0 }.add(&i, &j, &p, &mut sum);
+        let expected = (2.0 * -0.1 / 0.01) * -50.0 * 0.01 / 1000.0 * -0.1;
+        assert!((sum.acceleration[0] - expected).abs() < 1e-15 && expected < 0.0);
+    }
+}
