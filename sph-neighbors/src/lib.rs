@@ -1,1 +1,19 @@
-//! Cell lists and neighbour lists over particle positions and radii, in a canonical order
+//! Cell lists and neighbour lists over particle positions and radii, in a canonical order.
+//!
+//! * [`Grid`]: cells and fixed-point coordinates that depend on an origin and a cell size only.
+//! * [`CellList`]: particles sorted by cell, then by id.
+//! * [`NeighborList`]: who is within reach of whom.
+//!
+//! Lists depend on the set of particles alone: not on the order in which they are given, not on the
+//! number of threads, and not on which other particles are present further away. So a particle has
+//! the same neighbours in the same order in every decomposition of a domain.
+
+#![forbid(unsafe_code)]
+
+mod cells;
+mod grid;
+mod list;
+
+pub use cells::CellList;
+pub use grid::{Grid, GridError};
+pub use list::NeighborList;
