@@ -15,8 +15,8 @@ pub use columns::{ColumnError, Columns};
 #[cfg(feature = "mpi")]
 pub use comm::Mpi;
 pub use comm::{
-    CommError, Communicator, Exposed, Part, Progress, RanksError, Solo, ThreadRank, ThreadRanks,
-    Traffic, check_same_build,
+    CommError, Communicator, Exposed, Operation, Part, Progress, RanksError, Solo, ThreadRank,
+    ThreadRanks, Traffic, check_same_build,
 };
 pub use halo::{Halo, HaloPlan, PlanError};
 pub use migrate::{MigrateError, MigrationReport, migrate};

@@ -70,6 +70,12 @@ fn long_messages_travel_in_pieces() {
 }
 
 #[test]
+#[ignore = "needs 12 GB of memory"]
+fn messages_above_two_gibibytes() {
+    succeeds(2, "huge");
+}
+
+#[test]
 fn an_error_of_one_rank_ends_the_job() {
     fails(3, "error", "rank 1: the tank is empty");
 }
@@ -82,6 +88,11 @@ fn a_panic_of_one_rank_ends_the_job() {
 #[test]
 fn a_panic_in_the_middle_of_a_pass_ends_the_job() {
     fails(2, "panic in flight", "a neighbour list is broken");
+}
+
+#[test]
+fn a_rank_that_is_killed_ends_the_job() {
+    fails(2, "kill", "signal 9");
 }
 
 #[test]
@@ -116,9 +127,21 @@ fn rank(mpi: &Mpi, task: &str) -> Outcome {
             collectives(mpi)?;
             same_as_threads(mpi)
         }
+        "huge" => {
+            let bytes = (1_usize << 31) + 12_345;
+            pass(mpi, bytes, bytes, &mut |progress| progress.poll())?;
+            let got = mpi.exchange_some(vec![(1 - mpi.rank(), vec![7; bytes])])?;
+            assert!(got[0].1.len() == bytes && got[0].1.iter().all(|&byte| byte == 7));
+            Ok(())
+        }
         "error" if mpi.rank() == 1 => Err("the tank is empty".into()),
         "panic" if mpi.rank() == 1 => panic!("the bottom fell out"),
-        "error" | "panic" => Ok(mpi.max_f64(&mut [0.0])?),
+        "kill" if mpi.rank() == 1 => {
+            let me = std::process::id().to_string();
+            Command::new("kill").args(["-9", &me]).status()?;
+            Err("it survived".into())
+        }
+        "error" | "panic" | "kill" => Ok(mpi.max_f64(&mut [0.0])?),
         "panic in flight" => {
             pass(mpi, 8, 8, &mut |_| assert!(mpi.rank() == 0, "a neighbour list is broken"))
         }
@@ -138,17 +161,19 @@ fn pass(
     local: &mut dyn FnMut(&mut dyn Progress),
 ) -> Outcome {
     let other = 1 - mpi.rank();
+    let mut received = vec![0; expected];
     mpi.overlap(
         Traffic {
             send: &mut vec![1; sent],
             send_parts: &[Part { rank: other, bytes: 0..sent }],
-            receive: &mut vec![0; expected],
+            receive: &mut received,
             receive_parts: &[Part { rank: other, bytes: 0..expected }],
             maxima: &mut [],
         },
         &mut |_| (),
         local,
     )?;
+    assert!(received.iter().all(|&byte| byte == 1), "everything has arrived");
     Ok(())
 }
 

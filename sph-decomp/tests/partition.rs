@@ -47,7 +47,7 @@ fn imbalance(loads: &[f64]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn the_holders_of_the_particles_do_not_matter(

@@ -1,5 +1,22 @@
 //! What can go wrong between ranks.
 
+use std::fmt;
+
+/// A collective operation: what it is, and how many there have been before it on this rank.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Operation {
+    /// The method of the communicator.
+    pub name: &'static str,
+    /// Its number, from 1.
+    pub number: u64,
+}
+
+impl fmt::Display for Operation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "operation {} ({})", self.number, self.name)
+    }
+}
+
 /// An error of a communicator.
 ///
 /// Every operation is collective, so an error on one rank leaves the others waiting. Under
@@ -18,16 +35,16 @@ pub enum CommError {
     },
     /// The ranks are not in the same operation.
     #[error(
-        "rank {rank} sent a message of its operation number {got}, but this rank is at its number \
-         {expected}: all ranks must call the same collective operations in the same order"
+        "rank {rank} is in {theirs} while this rank is in {ours}: all ranks must call the same \
+         collective operations in the same order"
     )]
     OutOfStep {
-        /// The sender.
+        /// The other rank.
         rank: usize,
-        /// The number of the sender's operation.
-        got: u64,
-        /// The number of the operation of this rank.
-        expected: u64,
+        /// Its operation.
+        theirs: Operation,
+        /// The operation of this rank.
+        ours: Operation,
     },
     /// A message is longer or shorter than the receiver was told.
     #[error(

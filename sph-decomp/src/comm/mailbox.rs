@@ -4,12 +4,12 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-use super::CommError;
+use super::{CommError, Operation};
 
 /// A message and the number of the operation it belongs to.
 #[derive(Debug)]
 pub(super) struct Message {
-    pub operation: u64,
+    pub operation: Operation,
     pub bytes: Vec<u8>,
 }
 

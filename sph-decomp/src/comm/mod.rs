@@ -13,7 +13,7 @@ mod traffic;
 #[cfg(feature = "mpi")]
 pub use self::mpi::Mpi;
 pub use build::check_same_build;
-pub use error::CommError;
+pub use error::{CommError, Operation};
 pub use solo::Solo;
 pub use threads::{RanksError, ThreadRank, ThreadRanks};
 pub use traffic::{Exposed, Part, Progress, Traffic};

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use super::mailbox::{Message, PostOffice};
 use super::order::max_ordered;
-use super::{CommError, Communicator, Exposed, Progress, Traffic, check_letters, words};
+use super::{CommError, Communicator, Exposed, Operation, Progress, Traffic, check_letters, words};
 
 /// Runs a program on several ranks that are threads of this process: the embedded way to use and
 /// to test a decomposition, without MPI.
@@ -164,27 +164,27 @@ pub struct ThreadRank {
 }
 
 impl ThreadRank {
-    fn next_operation(&self) -> u64 {
+    fn next_operation(&self, name: &'static str) -> Operation {
         self.operation.set(self.operation.get() + 1);
-        self.operation.get()
+        Operation { name, number: self.operation.get() }
     }
 
-    fn post(&self, to: usize, operation: u64, bytes: &[u8]) {
+    fn post(&self, to: usize, operation: Operation, bytes: &[u8]) {
         let mut copy = self.spare.borrow_mut().pop().unwrap_or_default();
         copy.clear();
         copy.extend_from_slice(bytes);
         self.office.post(self.rank, to, Message { operation, bytes: copy });
     }
 
-    fn take(&self, from: usize, operation: u64) -> Result<Vec<u8>, CommError> {
+    fn take(&self, from: usize, operation: Operation) -> Result<Vec<u8>, CommError> {
         let message = self.office.take(self.rank, from)?;
         Self::in_step(from, operation, message)
     }
 
-    fn in_step(from: usize, operation: u64, message: Message) -> Result<Vec<u8>, CommError> {
-        let (got, expected) = (message.operation, operation);
-        if got != expected {
-            return Err(CommError::OutOfStep { rank: from, got, expected });
+    fn in_step(rank: usize, ours: Operation, message: Message) -> Result<Vec<u8>, CommError> {
+        let theirs = message.operation;
+        if theirs != ours {
+            return Err(CommError::OutOfStep { rank, theirs, ours });
         }
         Ok(message.bytes)
     }
@@ -205,7 +205,7 @@ impl Communicator for ThreadRank {
     ) -> Result<Vec<(usize, Vec<u8>)>, CommError> {
         let size = self.size();
         check_letters(&send, size)?;
-        let operation = self.next_operation();
+        let operation = self.next_operation("exchange_some");
         // Everybody gets a letter, most of them empty: receivers then know when all have come.
         let mut letters = vec![Vec::new(); size];
         for (rank, bytes) in send {
@@ -225,7 +225,7 @@ impl Communicator for ThreadRank {
     }
 
     fn all_gather(&self, bytes: &[u8]) -> Result<Vec<Vec<u8>>, CommError> {
-        let operation = self.next_operation();
+        let operation = self.next_operation("all_gather");
         for rank in 0..self.size() {
             self.post(rank, operation, bytes);
         }
@@ -239,7 +239,7 @@ impl Communicator for ThreadRank {
         local: &mut dyn FnMut(&mut dyn Progress),
     ) -> Result<Exposed, CommError> {
         traffic.check(self.size())?;
-        let operation = self.next_operation();
+        let operation = self.next_operation("overlap");
         let others = || (0..self.size()).filter(|&rank| rank != self.rank);
         let mut wanted = Vec::new();
         if !traffic.maxima.is_empty() {
@@ -283,7 +283,7 @@ enum Want {
 /// The messages that an overlapped pass still waits for.
 struct Arrivals<'a> {
     comm: &'a ThreadRank,
-    operation: u64,
+    operation: Operation,
     receive: &'a mut [u8],
     maxima: &'a mut [f64],
     /// In the order in which each sender writes.

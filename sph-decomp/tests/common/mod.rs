@@ -41,6 +41,30 @@ impl<const D: usize> Cloud<D> {
         cloud
     }
 
+    /// Four slabs of a bar, each with half the spacing and reach of the one before.
+    pub fn graded(seed: u64) -> Self {
+        let mut random = random(seed);
+        let mut cloud = Self { positions: vec![], reach: vec![] };
+        let mut start = 0.0;
+        for (width, spacing) in [(0.5, 0.1), (0.25, 0.05), (0.15, 0.025), (0.1, 0.0125)] {
+            let cells: [usize; D] = std::array::from_fn(|axis| {
+                (if axis == 0 { width } else { 0.4 } / spacing) as usize
+            });
+            for mut number in 0..cells.iter().product() {
+                let x: [f64; D] = std::array::from_fn(|axis| {
+                    let cell = number % cells[axis];
+                    number /= cells[axis];
+                    let origin = if axis == 0 { start } else { 0.0 };
+                    origin + (cell as f64 + 0.5 + 0.4 * (random() - 0.5)) * spacing
+                });
+                cloud.positions.push(x);
+                cloud.reach.push(3.0 * spacing);
+            }
+            start += width;
+        }
+        cloud
+    }
+
     /// The distance of two particles, to the nearest image on periodic axes.
     pub fn distance(&self, i: usize, j: usize, period: &[Option<f64>; D]) -> f64 {
         let mut sum = 0.0;
