@@ -11,6 +11,7 @@ pub mod physics;
 pub mod rank;
 pub mod records;
 pub mod run;
+pub mod scene;
 pub mod simulation;
 pub mod spray;
 pub mod state;

@@ -1,0 +1,134 @@
+//! Checks of shapes: exactly one per table, the right number of components, sizes that exist.
+
+use super::values::Values;
+use crate::scene::document::Place;
+use crate::scene::error::SceneError;
+use crate::scene::located::At;
+use crate::scene::shape::{AxisKeys, Shape, ShapeKeys};
+use crate::scene::solid::Solid;
+
+const KEYS: &str = "box, sphere, cylinder, capsule, plane, polygon, mesh, union, difference";
+
+pub fn solid(values: &Values<'_>, index: usize, solid: &At<Solid>) -> Result<(), SceneError> {
+    let path = format!("solid.{index}");
+    let shapes = solid.shapes();
+    one_of(values, &path, solid.place, &shapes)?;
+    let plane = matches!(shapes[..], [Shape::Plane(_)]);
+    match &solid.fluid_side {
+        None if !plane => Err(values.invalid(
+            solid.place,
+            format!("solid `{}` lacks the key `fluid_side`", *solid.name),
+            "add fluid_side = \"inside\" for a tank or \"outside\" for an obstacle",
+        )),
+        Some(side) if plane => Err(values.invalid(
+            side.place,
+            format!("solid `{}` is a plane and has no fluid_side", *solid.name),
+            "remove the key: the fluid is on the side that the normal points to",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Exactly one shape, and that one in order.
+pub fn one_of(
+    values: &Values<'_>,
+    path: &str,
+    place: Place,
+    shapes: &[Shape<'_>],
+) -> Result<(), SceneError> {
+    match shapes {
+        [] => Err(values.invalid(
+            place,
+            format!("`{path}` has no shape"),
+            &format!("give exactly one of {KEYS}"),
+        )),
+        [one] => shape(values, path, one),
+        [first, second, ..] => Err(values.invalid(
+            second.place(),
+            format!("`{path}` has two shapes: {} and {}", first.key(), second.key()),
+            "give exactly one, or combine several with union = [{ … }, { … }]",
+        )),
+    }
+}
+
+fn shape(values: &Values<'_>, path: &str, shape: &Shape<'_>) -> Result<(), SceneError> {
+    let path = format!("{path}.{}", shape.key());
+    dimension(values, shape)?;
+    match shape {
+        Shape::Box(keys) => values.corners(&path, &keys.min, &keys.max),
+        Shape::Sphere(keys) => {
+            values.components(&format!("{path}.center"), &keys.center)?;
+            values.positive(&format!("{path}.radius"), &keys.radius, "in metres")
+        }
+        Shape::Cylinder(keys) | Shape::Capsule(keys) => axis(values, &path, keys),
+        Shape::Plane(keys) => {
+            values.components(&format!("{path}.point"), &keys.point)?;
+            values.components(&format!("{path}.normal"), &keys.normal)?;
+            if keys.normal.iter().all(|n| *n == 0.0) {
+                let what = format!("`{path}.normal` has no direction");
+                return Err(values.invalid(keys.normal.place, what, "for example [0, 1]"));
+            }
+            Ok(())
+        }
+        Shape::Polygon(points) => {
+            if points.len() < 3 {
+                let what = format!("`{path}` has {} corners", points.len());
+                return Err(values.invalid(points.place, what, "a polygon has 3 or more"));
+            }
+            let check = |(index, point)| values.components(&format!("{path}.{index}"), point);
+            points.iter().enumerate().try_for_each(check)
+        }
+        Shape::Mesh(_) => Ok(()),
+        Shape::Union(shapes) => several(values, &path, shapes, 1),
+        Shape::Difference(shapes) => several(values, &path, shapes, 2),
+    }
+}
+
+fn axis(values: &Values<'_>, path: &str, keys: &AxisKeys) -> Result<(), SceneError> {
+    values.components(&format!("{path}.from"), &keys.from)?;
+    values.components(&format!("{path}.to"), &keys.to)?;
+    values.positive(&format!("{path}.radius"), &keys.radius, "in metres")?;
+    if *keys.from == *keys.to {
+        let what = format!("`{path}` has no length: from and to are the same point");
+        return Err(values.invalid(keys.to.place, what, "move one end, or use a sphere"));
+    }
+    Ok(())
+}
+
+fn several(
+    values: &Values<'_>,
+    path: &str,
+    shapes: &At<Vec<At<ShapeKeys>>>,
+    least: usize,
+) -> Result<(), SceneError> {
+    if shapes.len() < least {
+        let what = format!("`{path}` has {} shapes, but needs {least} or more", shapes.len());
+        return Err(values.invalid(
+            shapes.place,
+            what,
+            "for example [{ box = … }, { sphere = … }]",
+        ));
+    }
+    for (index, keys) in shapes.iter().enumerate() {
+        one_of(values, &format!("{path}.{index}"), keys.place, &keys.shapes())?;
+    }
+    Ok(())
+}
+
+fn dimension(values: &Values<'_>, shape: &Shape<'_>) -> Result<(), SceneError> {
+    let (needed, instead) = match shape {
+        Shape::Cylinder(_) => (3, "in two dimensions, a sphere is a disc and a box a rectangle"),
+        Shape::Mesh(_) => (3, "in two dimensions, use a polygon"),
+        Shape::Polygon(_) => (2, "in three dimensions, use a mesh"),
+        _ => return Ok(()),
+    };
+    let dimension = values.scene.dimension();
+    if dimension == needed {
+        return Ok(());
+    }
+    let what = format!(
+        "a {} exists in {needed} dimensions only, but the scene has dimension = {dimension}",
+        shape.key()
+    );
+    Err(values.invalid(shape.place(), what, instead))
+}
