@@ -24,7 +24,7 @@ enum Work {
 /// that time lost to other programs does not make it shorter.
 fn microseconds(count: f64) {
     let mut x = 1.0_f64;
-    for _ in 0..(count * 700.0) as u64 {
+    for _ in 0..(count * 350.0) as u64 {
         x = std::hint::black_box(x * 1.000_000_1);
     }
 }
