@@ -1,1 +1,40 @@
-//! Solids for particle methods: mesh import and repair checks, signed distance, boundary particles
+//! Solids for particle methods: mesh import and checks, signed distances, particles of fluid
+//! regions and walls.
+//!
+//! * [`TriangleMesh`]: surfaces from STL files; [`check`] tells whether one is closed and
+//!   consistently oriented, [`mass_properties`] what a body of that shape weighs.
+//! * [`Shape`]: a set of points with a signed distance: primitives, meshes, polygons, unions and
+//!   differences, in two and three dimensions.
+//! * [`Solid`]: a shape with material on one side of its surface.
+//! * [`Lattice`]: where particles are placed; [`fill_lattice`] fills a region with them.
+//! * [`wall_particles`]: the particles of walls, one support radius deep and only near fluid.
+//!
+//! Lengths are in metres, directions are unit vectors, `D` is the dimension.
+//!
+//! The README shows it from the STL file to the particles.
+
+#![forbid(unsafe_code)]
+
+mod aabb;
+mod boundary;
+mod lattice;
+mod mesh;
+mod shape;
+mod solid;
+mod vector;
+
+pub use aabb::Aabb;
+pub use boundary::{Domain, WallParticles, free_cells, solid_at, wall_particles};
+pub use lattice::{
+    Lattice, LatticeError, LatticeRuns, NearSurface, fill_lattice, lattice_inside, near_surface,
+};
+pub use mesh::{
+    Defects, MassProperties, MeshError, MeshReport, TriangleMesh, check, mass_properties,
+};
+pub use shape::{Nearest, Shape, ShapeError};
+pub use solid::{FluidSide, Solid, depth_in_solids};
+
+/// Runs the programs of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

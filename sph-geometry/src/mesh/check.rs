@@ -1,0 +1,233 @@
+//! Whether a mesh is a closed, consistently oriented surface.
+
+use super::{MeshError, TriangleMesh, is_collapsed};
+use crate::aabb::Aabb;
+use crate::vector::{add_scaled, cross, dot, norm, scaled, sub};
+use std::fmt;
+
+/// How many places of a defect are kept.
+const PLACES: usize = 5;
+/// A triangle is degenerate when its height is below this fraction of its longest edge.
+const THINNEST: f64 = 1e-9;
+
+/// Places where something is wrong.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Defects {
+    /// What they are, in the singular.
+    pub kind: &'static str,
+    /// How many.
+    pub count: usize,
+    /// Where the first ones are: middles of edges or triangles, m.
+    pub places: Vec<[f64; 3]>,
+}
+
+impl Defects {
+    fn new(kind: &'static str) -> Self {
+        Self { kind, ..Self::default() }
+    }
+
+    fn add(&mut self, place: [f64; 3]) {
+        self.count += 1;
+        if self.places.len() < PLACES {
+            self.places.push(place);
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+}
+
+impl fmt::Display for Defects {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}{}", self.count, self.kind, if self.count == 1 { "" } else { "s" })?;
+        for (index, [x, y, z]) in self.places.iter().enumerate() {
+            write!(f, "{}({x:.6}, {y:.6}, {z:.6})", if index == 0 { " at " } else { ", " })?;
+        }
+        if self.count > self.places.len() { f.write_str(", …") } else { Ok(()) }
+    }
+}
+
+/// What [`check`] found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshReport {
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Number of parts whose triangles are connected by edges.
+    pub shells: usize,
+    /// Edges of one triangle: the rims of holes.
+    pub open_edges: Defects,
+    /// Edges of three or more triangles.
+    pub crowded_edges: Defects,
+    /// Edges whose two triangles disagree about which side is outside.
+    pub inconsistent_edges: Defects,
+    /// Triangles without area. They do no harm to a closed surface.
+    pub degenerate_triangles: Defects,
+    /// Triangles with the same corners as an earlier one.
+    pub duplicate_triangles: Defects,
+    /// Volume in m³, negative when the surface is inside out. Means something only for closed,
+    /// consistently oriented surfaces.
+    pub volume: f64,
+    /// Area, m².
+    pub area: f64,
+    /// The smallest box around all vertices.
+    pub bounding_box: Aabb<3>,
+}
+
+impl MeshReport {
+    /// Whether every edge belongs to exactly two triangles.
+    pub fn is_closed(&self) -> bool {
+        self.open_edges.is_empty() && self.crowded_edges.is_empty()
+    }
+
+    /// Whether neighbouring triangles agree about which side is outside.
+    pub fn is_oriented(&self) -> bool {
+        self.inconsistent_edges.is_empty()
+    }
+
+    /// Whether the triangles face inwards. Harmless: such a mesh is turned over when it becomes a
+    /// shape.
+    pub fn is_inside_out(&self) -> bool {
+        self.volume < 0.0
+    }
+
+    /// Why the mesh bounds no solid; `None` when it does.
+    pub fn error(&self) -> Option<MeshError> {
+        // Duplicates and holes make other defects; the cause comes first.
+        if !self.duplicate_triangles.is_empty() {
+            Some(MeshError::Duplicate { triangles: self.duplicate_triangles.clone() })
+        } else if !self.open_edges.is_empty() {
+            Some(MeshError::Open { edges: self.open_edges.clone() })
+        } else if !self.crowded_edges.is_empty() {
+            Some(MeshError::Crowded { edges: self.crowded_edges.clone() })
+        } else if !self.inconsistent_edges.is_empty() {
+            Some(MeshError::Inconsistent { edges: self.inconsistent_edges.clone() })
+        } else if self.volume.abs() <= 1e-12 * self.area.powf(1.5) {
+            Some(MeshError::NoVolume)
+        } else {
+            None
+        }
+    }
+}
+
+/// Looks for everything that would make inside and outside of a mesh ambiguous, save triangles
+/// that cut through each other. Fails when there is no mesh to speak of: no triangles, coordinates
+/// that are not finite, corners that do not exist.
+pub fn check(mesh: &TriangleMesh) -> Result<MeshReport, MeshError> {
+    mesh.validate()?;
+    let mut report = MeshReport {
+        vertices: mesh.vertices.len(),
+        triangles: mesh.triangles.len(),
+        shells: 0,
+        open_edges: Defects::new("edge"),
+        crowded_edges: Defects::new("edge"),
+        inconsistent_edges: Defects::new("edge"),
+        degenerate_triangles: Defects::new("triangle"),
+        duplicate_triangles: Defects::new("triangle"),
+        volume: 0.0,
+        area: 0.0,
+        bounding_box: mesh.bounding_box(),
+    };
+    measure(mesh, &mut report);
+    duplicates(mesh, &mut report);
+    edges(mesh, &mut report);
+    Ok(report)
+}
+
+fn middle(mesh: &TriangleMesh, triangle: usize) -> [f64; 3] {
+    let [a, b, c] = mesh.corners(triangle);
+    scaled(1.0 / 3.0, &add_scaled(&add_scaled(&a, 1.0, &b), 1.0, &c))
+}
+
+/// Volume by the divergence theorem, `V = Σ a·(b × c)/6`, from a corner of the box so that the
+/// distance from the origin costs no digits; area; triangles without area.
+fn measure(mesh: &TriangleMesh, report: &mut MeshReport) {
+    for triangle in 0..mesh.triangles.len() {
+        let corners = mesh.corners(triangle);
+        let [a, b, c] = corners.map(|x| sub(&x, &report.bounding_box.min));
+        let [ab, bc, ca] = [sub(&b, &a), sub(&c, &b), sub(&a, &c)];
+        let twice_area = norm(&cross(&ab, &bc));
+        let longest = norm(&ab).max(norm(&bc)).max(norm(&ca));
+        if twice_area <= THINNEST * longest * longest {
+            report.degenerate_triangles.add(middle(mesh, triangle));
+        }
+        report.area += 0.5 * twice_area;
+        report.volume += dot(&a, &cross(&b, &c)) / 6.0;
+    }
+}
+
+fn duplicates(mesh: &TriangleMesh, report: &mut MeshReport) {
+    let mut sorted: Vec<([u32; 3], usize)> = (0..mesh.triangles.len())
+        .map(|triangle| {
+            let mut corners = mesh.triangles[triangle];
+            corners.sort_unstable();
+            (corners, triangle)
+        })
+        .collect();
+    sorted.sort_unstable();
+    for pair in sorted.windows(2) {
+        if pair[0].0 == pair[1].0 && !is_collapsed(&pair[0].0) {
+            report.duplicate_triangles.add(middle(mesh, pair[1].1));
+        }
+    }
+}
+
+/// One side of a triangle: its ends in ascending order, whether the triangle runs through them in
+/// that order, and the triangle.
+type Side = ([u32; 2], bool, usize);
+
+fn edges(mesh: &TriangleMesh, report: &mut MeshReport) {
+    let mut sides: Vec<Side> = Vec::with_capacity(3 * mesh.triangles.len());
+    for (triangle, corners) in mesh.triangles.iter().enumerate() {
+        if is_collapsed(corners) {
+            continue;
+        }
+        for k in 0..3 {
+            let [a, b] = [corners[k], corners[(k + 1) % 3]];
+            sides.push(([a.min(b), a.max(b)], a < b, triangle));
+        }
+    }
+    sides.sort_unstable();
+    let mut shells = Shells::new(mesh.triangles.len());
+    for edge in sides.chunk_by(|a, b| a.0 == b.0) {
+        let [a, b] = edge[0].0.map(|vertex| mesh.vertices[vertex as usize]);
+        let place = scaled(0.5, &add_scaled(&a, 1.0, &b));
+        match edge {
+            [_] => report.open_edges.add(place),
+            [(_, one, _), (_, other, _)] if one == other => report.inconsistent_edges.add(place),
+            [_, _] => {}
+            _ => report.crowded_edges.add(place),
+        }
+        for pair in edge.windows(2) {
+            shells.join(pair[0].2, pair[1].2);
+        }
+    }
+    report.shells = (0..mesh.triangles.len())
+        .filter(|&t| !is_collapsed(&mesh.triangles[t]) && shells.root(t) == t)
+        .count();
+}
+
+/// Sets of connected triangles (union-find with path halving).
+struct Shells(Vec<usize>);
+
+impl Shells {
+    fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    fn root(&mut self, mut triangle: usize) -> usize {
+        while self.0[triangle] != triangle {
+            self.0[triangle] = self.0[self.0[triangle]];
+            triangle = self.0[triangle];
+        }
+        triangle
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let [a, b] = [self.root(a), self.root(b)];
+        self.0[a.max(b)] = a.min(b);
+    }
+}

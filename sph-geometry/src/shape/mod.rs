@@ -1,0 +1,182 @@
+//! Shapes: sets of points with a signed distance.
+
+mod combination;
+mod error;
+mod mesh_surface;
+mod polygon_surface;
+mod primitive;
+
+pub use error::ShapeError;
+
+use crate::aabb::Aabb;
+use crate::mesh::TriangleMesh;
+use crate::vector::{add_scaled, resized};
+use combination::{Difference, Union};
+use mesh_surface::MeshSurface;
+use polygon_surface::PolygonSurface;
+use primitive::{Ball, Capsule, Cuboid, Cylinder, HalfSpace};
+use std::sync::Arc;
+
+/// A set of points in D dimensions: a primitive, what a closed surface bounds, or a combination.
+/// Cheap to clone.
+///
+/// Its signed distance is negative inside. It is exact for all but combinations: there the sign is
+/// exact, and the true surface is at least as far away as the distance says.
+#[derive(Clone, Debug)]
+pub struct Shape<const D: usize>(Kind<D>);
+
+#[derive(Clone, Debug)]
+enum Kind<const D: usize> {
+    Cuboid(Cuboid<D>),
+    Ball(Ball<D>),
+    Cylinder(Cylinder<D>),
+    Capsule(Capsule<D>),
+    HalfSpace(HalfSpace<D>),
+    /// Only for D = 2: `polygon` makes no other.
+    Polygon(Arc<PolygonSurface>),
+    /// Only for D = 3: `mesh` makes no other.
+    Mesh(Arc<MeshSurface>),
+    Union(Arc<Union<D>>),
+    Difference(Arc<Difference<D>>),
+}
+
+/// How far a surface is, and in which direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest<const D: usize> {
+    /// Signed distance in m, negative inside.
+    pub distance: f64,
+    /// Unit vector out of the shape: the gradient of the signed distance. Where several points of
+    /// the surface are equally near, that of one of them.
+    pub normal: [f64; D],
+}
+
+/// Runs the same code for every kind; surfaces take and give arrays of their own dimension.
+macro_rules! each_kind {
+    ($shape:expr, $one:ident => $plain:expr, $surface:ident => $resized:expr) => {
+        match &$shape.0 {
+            Kind::Cuboid($one) => $plain,
+            Kind::Ball($one) => $plain,
+            Kind::Cylinder($one) => $plain,
+            Kind::Capsule($one) => $plain,
+            Kind::HalfSpace($one) => $plain,
+            Kind::Union($one) => $plain,
+            Kind::Difference($one) => $plain,
+            Kind::Polygon($surface) => $resized,
+            Kind::Mesh($surface) => $resized,
+        }
+    };
+}
+
+impl<const D: usize> Shape<D> {
+    /// An axis-parallel box: a rectangle in two dimensions.
+    pub fn cuboid(min: [f64; D], max: [f64; D]) -> Result<Self, ShapeError> {
+        Cuboid::new(min, max).map(|shape| Self(Kind::Cuboid(shape)))
+    }
+
+    /// A ball: a disc in two dimensions.
+    pub fn sphere(center: [f64; D], radius: f64) -> Result<Self, ShapeError> {
+        Ball::new(center, radius).map(|shape| Self(Kind::Ball(shape)))
+    }
+
+    /// A cylinder with flat ends: a rotated rectangle in two dimensions.
+    pub fn cylinder(from: [f64; D], to: [f64; D], radius: f64) -> Result<Self, ShapeError> {
+        Cylinder::new(from, to, radius).map(|shape| Self(Kind::Cylinder(shape)))
+    }
+
+    /// All points closer than `radius` to a segment.
+    pub fn capsule(from: [f64; D], to: [f64; D], radius: f64) -> Result<Self, ShapeError> {
+        Capsule::new(from, to, radius).map(|shape| Self(Kind::Capsule(shape)))
+    }
+
+    /// The half space behind a plane (a line in two dimensions): `normal`, of any length, points
+    /// out of it.
+    pub fn half_space(point: [f64; D], normal: [f64; D]) -> Result<Self, ShapeError> {
+        HalfSpace::new(point, normal).map(|shape| Self(Kind::HalfSpace(shape)))
+    }
+
+    /// The inside of a simple polygon, with corners in either direction; two dimensions only.
+    pub fn polygon(corners: &[[f64; D]]) -> Result<Self, ShapeError> {
+        if D != 2 {
+            return Err(ShapeError::Dimension { shape: "polygon", needed: 2, found: D });
+        }
+        let corners: Vec<[f64; 2]> = corners.iter().map(resized).collect();
+        PolygonSurface::new(&corners).map(|shape| Self(Kind::Polygon(Arc::new(shape))))
+    }
+
+    /// The inside of a closed, consistently oriented surface; three dimensions only. A surface
+    /// that is inside out is turned over.
+    pub fn mesh(mesh: &TriangleMesh) -> Result<Self, ShapeError> {
+        if D != 3 {
+            return Err(ShapeError::Dimension { shape: "mesh", needed: 3, found: D });
+        }
+        MeshSurface::new(mesh).map(|shape| Self(Kind::Mesh(Arc::new(shape))))
+    }
+
+    /// What is in any of the shapes.
+    pub fn union(shapes: Vec<Self>) -> Result<Self, ShapeError> {
+        Union::new(shapes).map(|shape| Self(Kind::Union(Arc::new(shape))))
+    }
+
+    /// What is in `first` and in none of the others.
+    pub fn difference(first: Self, others: Vec<Self>) -> Self {
+        Self(Kind::Difference(Arc::new(Difference::new(first, others))))
+    }
+
+    /// Distance to the surface in m, negative inside.
+    pub fn signed_distance(&self, x: &[f64; D]) -> f64 {
+        each_kind!(self,
+            shape => shape.signed_distance(x),
+            surface => surface.signed_distance(&resized(x)))
+    }
+
+    /// Distance and direction of the surface.
+    pub fn nearest(&self, x: &[f64; D]) -> Nearest<D> {
+        each_kind!(self,
+        shape => shape.nearest(x),
+        surface => {
+            let Nearest { distance, normal } = surface.nearest(&resized(x));
+            Nearest { distance, normal: resized(&normal) }
+        })
+    }
+
+    /// Unit vector out of the shape at the nearest point of the surface.
+    pub fn normal(&self, x: &[f64; D]) -> [f64; D] {
+        self.nearest(x).normal
+    }
+
+    /// The nearest point of the surface. For combinations, a point on the way to it.
+    pub fn closest_point(&self, x: &[f64; D]) -> [f64; D] {
+        let nearest = self.nearest(x);
+        add_scaled(x, -nearest.distance, &nearest.normal)
+    }
+
+    /// Whether a point is inside. Points on the surface, up to rounding, may be either.
+    pub fn contains(&self, x: &[f64; D]) -> bool {
+        self.signed_distance(x) < 0.0
+    }
+
+    /// A box around the shape, infinite where the shape is.
+    pub fn bounding_box(&self) -> Aabb<D> {
+        each_kind!(self,
+        shape => shape.bounding_box(),
+        surface => {
+            let Aabb { min, max } = surface.bounding_box();
+            Aabb::new(resized(&min), resized(&max))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surfaces_exist_in_their_own_dimension_only() {
+        let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let error = Shape::polygon(&triangle).unwrap_err();
+        assert!(matches!(error, ShapeError::Dimension { needed: 2, found: 3, .. }));
+        let mesh = TriangleMesh::cuboid([0.0; 3], [1.0; 3]);
+        let error = Shape::<2>::mesh(&mesh).unwrap_err();
+        assert!(matches!(error, ShapeError::Dimension { needed: 3, found: 2, .. }));
+    }
+}

@@ -1,0 +1,83 @@
+//! Solids: shapes with material on one side of their surface.
+
+use crate::shape::Shape;
+
+/// On which side of a surface fluid can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FluidSide {
+    /// Fluid inside, material outside: a tank.
+    Inside,
+    /// Fluid outside, material inside: an obstacle.
+    Outside,
+}
+
+/// Material on one side of the surface of a shape.
+#[derive(Debug, Clone)]
+pub struct Solid<const D: usize> {
+    /// Name, for messages and output.
+    pub name: String,
+    /// The shape whose surface is the wall.
+    pub shape: Shape<D>,
+    /// The other side is material.
+    pub fluid_side: FluidSide,
+}
+
+impl<const D: usize> Solid<D> {
+    /// A solid with a name.
+    pub fn new(name: impl Into<String>, shape: Shape<D>, fluid_side: FluidSide) -> Self {
+        Self { name: name.into(), shape, fluid_side }
+    }
+
+    /// Depth below the surface in m: positive in the material, negative where fluid can be. Exact
+    /// where the signed distance of the shape is.
+    pub fn depth_in_solid(&self, x: &[f64; D]) -> f64 {
+        let distance = self.shape.signed_distance(x);
+        match self.fluid_side {
+            FluidSide::Inside => distance,
+            FluidSide::Outside => -distance,
+        }
+    }
+
+    /// Unit vector out of the material, into the fluid, at the nearest point of the surface.
+    pub fn normal(&self, x: &[f64; D]) -> [f64; D] {
+        let normal = self.shape.normal(x);
+        match self.fluid_side {
+            FluidSide::Inside => normal.map(|n| -n),
+            FluidSide::Outside => normal,
+        }
+    }
+
+    /// The nearest point of the wall.
+    pub fn closest_point(&self, x: &[f64; D]) -> [f64; D] {
+        self.shape.closest_point(x)
+    }
+}
+
+/// Depth below the surface of all solids together in m: the largest of their depths. Positive in
+/// material; at most the distance to free space.
+pub fn depth_in_solids<const D: usize>(solids: &[Solid<D>], x: &[f64; D]) -> f64 {
+    solids.iter().map(|solid| solid.depth_in_solid(x)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tank_with_a_pillar() {
+        let tank = Shape::cuboid([0.0, 0.0], [4.0, 2.0]).unwrap();
+        let pillar = Shape::sphere([2.0, 1.0], 0.5).unwrap();
+        let solids = [
+            Solid::new("tank", tank, FluidSide::Inside),
+            Solid::new("pillar", pillar, FluidSide::Outside),
+        ];
+        assert_eq!(solids[0].depth_in_solid(&[1.0, -0.25]), 0.25);
+        assert_eq!(solids[0].normal(&[1.0, -0.25]), [0.0, 1.0]);
+        assert_eq!(solids[0].closest_point(&[1.0, -0.25]), [1.0, 0.0]);
+        assert_eq!(solids[1].depth_in_solid(&[2.0, 1.25]), 0.25);
+        assert_eq!(solids[1].normal(&[2.0, 1.25]), [0.0, 1.0]);
+        assert_eq!(depth_in_solids(&solids, &[2.0, 1.75]), -0.25);
+        assert_eq!(depth_in_solids(&solids, &[2.0, 1.25]), 0.25);
+        assert_eq!(depth_in_solids::<2>(&[], &[0.0, 0.0]), f64::NEG_INFINITY);
+    }
+}
