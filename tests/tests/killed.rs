@@ -1,0 +1,87 @@
+//! A run that is killed at any moment leaves whole files, from which it goes on.
+
+use sph_tests::{Results, Run, Running, SHIPPED, SMALL, assert_whole, write_scene};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Moments from 0 to 1, spread evenly and the same in every run: the golden ratio's multiples.
+fn moments(seed: u32) -> impl Iterator<Item = f64> {
+    (seed..).map(|k| (f64::from(k) * 0.618_033_988_749_894_9).fract())
+}
+
+/// Lets the run go on for a while, then kills it. Returns whether it was still running.
+fn kill_after(mut running: Running, delay: Duration) -> bool {
+    let end = Instant::now() + delay;
+    while Instant::now() < end {
+        if running.has_ended() {
+            let outcome = running.wait();
+            assert!(outcome.status.success(), "{outcome}");
+            return false;
+        }
+        sleep(Duration::from_millis(1));
+    }
+    !running.kill().status.success()
+}
+
+/// Kills `run` again and again while it goes on from its checkpoints; then lets it end.
+fn check(run: &Run, dimension: usize, kills: usize) {
+    let start = Instant::now();
+    let undisturbed = Results::of(run.clone());
+    let length = start.elapsed();
+    let results = Results::new();
+    let mut survived = 0;
+    for (kill, moment) in moments(1).take(kills).enumerate() {
+        let ranks = 1 + kill % 2;
+        let running = run.clone().ranks(ranks).resume().out(results.path()).start();
+        // Short enough for several kills on the way to the end.
+        if !kill_after(running, length.mul_f64(0.4 * moment)) {
+            survived += 1;
+        }
+        assert_whole(&results.path(), dimension);
+    }
+    assert!(survived < kills, "no run was killed");
+    results.add(run.clone().resume());
+    assert_whole(&results.path(), dimension);
+    assert_eq!(results.digest(), undisturbed.digest());
+    assert_eq!(results.series(), undisturbed.series());
+    for path in undisturbed.files(".csv") {
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        assert_eq!(results.table(name), undisturbed.table(name), "{name}");
+    }
+    let temporaries = results.contents().into_iter().map(|(path, _)| path);
+    let left: Vec<_> =
+        temporaries.filter(|path| path.to_string_lossy().ends_with(".tmp")).collect();
+    assert!(left.is_empty(), "{left:?} stay behind");
+}
+
+#[test]
+fn a_run_that_writes_all_the_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = Run::new(write_scene(folder.path(), SMALL)).threads(1).end_time(1.0);
+    let outputs = ["output.snapshots=0.002", "output.energies=0.001"];
+    let run = outputs.iter().fold(run, |run, change| run.set(change));
+    check(&run.checkpoint_every(0.004), 2, 10);
+}
+
+#[test]
+fn a_dam_break_in_space() {
+    let scene = SHIPPED[2];
+    let run = scene.run().threads(1).set("output.snapshots=0.02");
+    check(&run.checkpoint_every(0.05 * scene.end_time), 3, 5);
+}
+
+/// From the very first moments, before there is anything to go on from.
+#[test]
+fn at_the_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = Run::new(write_scene(folder.path(), SMALL)).threads(1).set("output.snapshots=0.01");
+    let undisturbed = Results::of(run.clone());
+    for moment in moments(100).take(12) {
+        let results = Results::new();
+        let running = run.clone().out(results.path()).start();
+        kill_after(running, Duration::from_millis(40).mul_f64(moment));
+        assert_whole(&results.path(), 2);
+        results.add(run.clone().resume());
+        assert_eq!(results.digest(), undisturbed.digest());
+    }
+}

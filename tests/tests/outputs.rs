@@ -1,0 +1,246 @@
+//! What a run leaves: summary, snapshots, tables, checkpoints.
+
+use serde_json::Value;
+use sph_tests::{Results, Run, SHIPPED, SMALL, assert_finite, python_with, read_vtu, write_scene};
+use std::fs;
+use std::sync::OnceLock;
+
+const COUNTS: [&str; 3] = ["/steps", "/lost_particles", "/particles/fluid"];
+const NUMBERS: [&str; 15] = [
+    "/simulated_time",
+    "/wall_seconds",
+    "/cpu_seconds",
+    "/phases/rebuild",
+    "/phases/density",
+    "/phases/force",
+    "/phases/output",
+    "/particle_updates_per_second",
+    "/pair_interactions_per_second",
+    "/neighbours_per_particle",
+    "/exposed_seconds",
+    "/halo_redundancy",
+    "/imbalance",
+    "/energies/end/kinetic",
+    "/energies/end/potential",
+];
+
+/// A dam break in the plane with every kind of output.
+fn flat() -> &'static Results {
+    static RESULTS: OnceLock<Results> = OnceLock::new();
+    RESULTS.get_or_init(|| Results::of(with_outputs(SHIPPED[0].run(), SHIPPED[0].end_time)))
+}
+
+fn solid() -> &'static Results {
+    static RESULTS: OnceLock<Results> = OnceLock::new();
+    RESULTS.get_or_init(|| Results::of(with_outputs(SHIPPED[2].run(), SHIPPED[2].end_time)))
+}
+
+fn with_outputs(run: Run, end_time: f64) -> Run {
+    run.threads(1)
+        .set(&format!("output.snapshots={}", 0.25 * end_time))
+        .set(&format!("output.energies={}", 0.02 * end_time))
+        .checkpoint_every(0.25 * end_time)
+}
+
+fn number(value: &Value, path: &str) -> f64 {
+    let found = value.pointer(path).and_then(Value::as_f64);
+    found.unwrap_or_else(|| panic!("no number {path} in {value:#}"))
+}
+
+#[test]
+fn the_summary_says_everything() {
+    for (results, scene) in [(flat(), SHIPPED[0]), (solid(), SHIPPED[2])] {
+        let summary = results.summary();
+        for path in COUNTS {
+            let found = summary.pointer(path).and_then(Value::as_u64);
+            assert!(found.is_some(), "no count {path} in {summary:#}");
+        }
+        for path in NUMBERS {
+            let found = number(&summary, path);
+            assert!(found.is_finite() && (found >= 0.0 || path.contains("potential")), "{path}");
+        }
+        assert_eq!(summary["name"], scene.name);
+        assert_eq!(summary["dimension"], scene.dimension);
+        assert_eq!(summary["momentum"].as_array().unwrap().len(), scene.dimension);
+        assert_eq!(summary["ranks"], 1);
+        assert_eq!(summary["lost_particles"], 0);
+        let digest = results.digest();
+        assert!(digest.len() == 32 && digest.chars().all(|c| c.is_ascii_hexdigit()), "{digest}");
+        let time = number(&summary, "/simulated_time");
+        // A step may end a little later.
+        assert!(scene.end_time <= time && time < 1.05 * scene.end_time, "{time}");
+        assert!(number(&summary, "/particles/wall") > 0.0);
+        assert!(number(&summary, "/energies/end/kinetic") > 0.0);
+        let neighbours = number(&summary, "/neighbours_per_particle");
+        let sphere = if scene.dimension == 2 { 10.0..60.0 } else { 30.0..200.0 };
+        assert!(sphere.contains(&neighbours), "{neighbours}");
+        // Nobody updates more particles in a second than this machine has done in all.
+        let all = number(&summary, "/steps") * number(&summary, "/particles/fluid");
+        let rate = number(&summary, "/particle_updates_per_second");
+        assert!(rate * number(&summary, "/wall_seconds") >= 0.5 * all, "{rate}");
+    }
+}
+
+#[test]
+fn energy_turns_from_potential_to_kinetic() {
+    for results in [flat(), solid()] {
+        let table = results.table("energies");
+        assert!(table.times_increase() && table.rows.len() > 30, "{:?}", table.times());
+        assert_eq!(table.rows[0][0], 0.0);
+        let [kinetic, potential] = ["kinetic", "potential"].map(|name| table.column(name));
+        let last = table.rows.len() - 1;
+        assert_eq!(kinetic[0], 0.0);
+        let fallen = potential[0] - potential[last];
+        assert!(fallen > 0.0 && kinetic[last] > 0.3 * fallen, "{kinetic:?}");
+        assert!(kinetic[last] < 1.05 * fallen, "energy from nowhere: {kinetic:?}, {fallen}");
+        let end = &results.summary()["energies"]["end"];
+        assert_eq!(number(end, "/kinetic"), kinetic[last]);
+        assert_eq!(number(end, "/potential"), potential[last]);
+    }
+}
+
+#[test]
+fn every_probe_has_its_table() {
+    for results in [flat(), solid()] {
+        let probes = results.files(".csv");
+        let probes: Vec<_> = probes
+            .iter()
+            .filter_map(|path| path.file_stem()?.to_str()?.strip_prefix("probe-"))
+            .collect();
+        assert!(!probes.is_empty(), "the scene has no probes");
+        let energies = results.table("energies");
+        for probe in probes {
+            let table = results.table(&format!("probe-{probe}"));
+            assert_eq!(table.times(), energies.times(), "{probe}");
+            for title in &table.titles {
+                assert!(title.contains(" [") && title.ends_with(']'), "no unit: {title}");
+            }
+        }
+    }
+}
+
+#[test]
+fn snapshots_hold_all_particles() {
+    for (results, dimension) in [(flat(), 2), (solid(), 3)] {
+        let summary = results.summary();
+        let (fluid, wall) =
+            (number(&summary, "/particles/fluid"), number(&summary, "/particles/wall"));
+        let series = results.series();
+        let moving: Vec<_> = series.iter().filter(|entry| entry.part == 0).collect();
+        assert_eq!(moving.len(), 5, "{series:?}");
+        assert!(moving.windows(2).all(|pair| pair[0].time < pair[1].time), "{series:?}");
+        assert_eq!(moving[4].time, number(&summary, "/simulated_time"));
+        for moment in &moving {
+            let mut kinds = Vec::new();
+            let mut ids = Vec::new();
+            for entry in series.iter().filter(|entry| entry.time == moment.time) {
+                let file = read_vtu(&results.path().join(&entry.file));
+                for (name, components) in
+                    [("velocity", 3), ("pressure", 1), ("density", 1), ("kind", 1), ("id", 1)]
+                {
+                    let array = file.array(name);
+                    let shape = [1, dimension, 3].contains(&array.components);
+                    assert!(shape && array.components <= components, "{name}: {array:?}");
+                }
+                kinds.extend_from_slice(&file.array("kind").values);
+                ids.extend_from_slice(&file.array("id").values);
+            }
+            let count = |fluid: bool| kinds.iter().filter(|kind| (**kind == 0.0) == fluid).count();
+            assert_eq!((count(true) as f64, count(false) as f64), (fluid, wall), "{moment:?}");
+            ids.sort_by(f64::total_cmp);
+            ids.dedup();
+            assert_eq!(ids.len(), kinds.len(), "ids are not unique");
+        }
+        assert_finite(&results.path(), dimension);
+    }
+}
+
+#[test]
+fn vtk_and_h5py_open_everything() {
+    for results in [flat(), solid()] {
+        let script = "read_outputs.py";
+        let Some(report) = python_with(&["vtk", "h5py"], script, &results.path()) else { return };
+        let report: Value = serde_json::from_str(&report).unwrap();
+        let summary = results.summary();
+        let snapshots = report["snapshots"].as_array().unwrap();
+        let fluid: Vec<_> = snapshots.iter().filter(|one| one["part"] == 0).collect();
+        assert_eq!(fluid.len(), 5);
+        for snapshot in &fluid {
+            assert_eq!(snapshot["fluid"], summary["particles"]["fluid"]);
+            assert_eq!(snapshot["points"], snapshot["fluid"]);
+        }
+        assert_eq!(number(fluid[0], "/largest_speed"), 0.0);
+        assert!(number(fluid[4], "/largest_speed") > 0.1);
+        assert!(number(fluid[4], "/front") > number(fluid[0], "/front") + 0.05);
+        for walls in snapshots.iter().filter(|one| one["part"] == 1) {
+            assert_eq!(walls["points"], summary["particles"]["wall"]);
+            assert_eq!(walls["fluid"], 0);
+        }
+        let checkpoints = report["checkpoints"].as_array().unwrap();
+        assert!(!checkpoints.is_empty());
+        for checkpoint in checkpoints {
+            assert_eq!(checkpoint["fluid"], summary["particles"]["fluid"]);
+            assert!(number(checkpoint, "/time") > 0.0 && number(checkpoint, "/step") > 0.0);
+            assert!(number(checkpoint, "/mass") > 0.0);
+            assert!(checkpoint["scene"].as_str().unwrap().contains("[fluid."), "{checkpoint}");
+        }
+    }
+}
+
+#[test]
+fn no_file_but_those_of_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = write_scene(folder.path(), SMALL);
+    let results = Results::of(Run::new(&scene).threads(1).within(folder.path()));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "files outside of --out");
+    let names: Vec<_> = results
+        .contents()
+        .iter()
+        .map(|(path, _)| path.file_name().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    let expected = [
+        "energies.csv",
+        "lost.csv",
+        "probe-P1.csv",
+        "small-000000.vtu",
+        "small-000001.vtu",
+        "small-000002.vtu",
+        "small-000003.vtu",
+        "small-000004.vtu",
+        "small-walls.vtu",
+        "small.pvd",
+        "summary.json",
+    ];
+    assert_eq!(names, expected);
+    assert!(results.table("lost").rows.is_empty());
+}
+
+/// Two runs into one folder: nothing of the first is left in the series and the tables.
+#[test]
+fn a_second_run_replaces_the_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = write_scene(folder.path(), SMALL);
+    let run = |end_time| Run::new(&scene).threads(1).end_time(end_time).checkpoint_every(0.02);
+    let results = Results::of(run(0.2));
+    results.add(run(0.1));
+    let fresh = Results::of(run(0.1));
+    assert_eq!(results.digest(), fresh.digest());
+    assert_eq!(results.series(), fresh.series());
+    assert_eq!(results.table("energies"), fresh.table("energies"));
+    // A checkpoint of the longer run would be taken for one of the shorter run.
+    results.add(run(0.15).resume());
+    assert_eq!(results.digest(), Results::of(run(0.15)).digest());
+}
+
+#[test]
+fn a_quiet_run_is_quiet_and_the_usual_one_tells() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = write_scene(folder.path(), SMALL);
+    let results = Results::new();
+    let quiet = results.add(Run::new(&scene).threads(1));
+    assert!(quiet.output.is_empty() && quiet.message.0.is_empty(), "{quiet}");
+    let usual = results.add(Run::new(&scene).threads(1).aloud());
+    let said = format!("{}{}", usual.output, usual.message);
+    let out = results.path();
+    assert!(said.contains(out.to_str().unwrap()), "the results are not named: {usual}");
+}

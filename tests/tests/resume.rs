@@ -1,0 +1,168 @@
+//! A run that was stopped goes on from its checkpoint as if nothing had happened.
+
+use sph_tests::{Reduced, Results, Run, SHIPPED, SMALL, mpi_program, write_scene};
+use std::path::Path;
+use std::sync::OnceLock;
+
+/// Scene of most tests here.
+const SCENE: Reduced = SHIPPED[0];
+/// Where the stopped run stops.
+const STOP: f64 = 0.55 * SCENE.end_time;
+/// Interval of the checkpoints.
+const EVERY: f64 = 0.2 * SCENE.end_time;
+
+fn with_checkpoints(run: Run) -> Run {
+    run.checkpoint_every(EVERY).threads(1)
+}
+
+/// The run that nothing disturbs, without checkpoints.
+fn undisturbed() -> &'static Results {
+    static RESULTS: OnceLock<Results> = OnceLock::new();
+    RESULTS.get_or_init(|| Results::of(frequent(SCENE.run()).threads(1)))
+}
+
+/// A run that stopped on the way.
+fn stopped() -> Results {
+    static RESULTS: OnceLock<Results> = OnceLock::new();
+    let stopped = RESULTS.get_or_init(|| {
+        let results = Results::of(with_checkpoints(frequent(SCENE.run_until(STOP))));
+        assert_ne!(results.digest(), undisturbed().digest());
+        assert!(!results.files(".vtkhdf").is_empty(), "no checkpoint was written");
+        results
+    });
+    stopped.copy()
+}
+
+/// Outputs often enough for the stop to fall between many.
+fn frequent(run: Run) -> Run {
+    run.set("output.snapshots=0.05").set("output.energies=0.005")
+}
+
+#[track_caller]
+fn assert_undisturbed(results: &Results, how: &str) {
+    let expected = undisturbed();
+    let summary = results.summary();
+    let resumed_at = summary["resumed_at"].as_f64();
+    let resumed_at = resumed_at.unwrap_or_else(|| panic!("{how}: not resumed: {summary:#}"));
+    assert!(0.0 < resumed_at && resumed_at < STOP, "{how}: resumed at {resumed_at}");
+    assert_eq!(results.digest(), expected.digest(), "{how}");
+    assert_eq!(summary["steps"], expected.summary()["steps"], "{how}");
+    assert_eq!(results.series(), expected.series(), "{how}");
+    for path in expected.files(".csv") {
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let table = results.table(name);
+        assert!(table.times_increase(), "{how}: {name}: {:?}", table.times());
+        assert_eq!(table, expected.table(name), "{how}: {name}");
+    }
+    for path in expected.files(".vtu") {
+        let name = path.file_name().unwrap();
+        let same =
+            std::fs::read(results.path().join(name)).unwrap() == std::fs::read(&path).unwrap();
+        assert!(same, "{how}: {} differs", name.display());
+    }
+}
+
+#[test]
+fn checkpoints_do_not_change_the_run() {
+    let results = Results::of(with_checkpoints(frequent(SCENE.run())));
+    assert!(!results.files(".vtkhdf").is_empty(), "no checkpoint was written");
+    assert_eq!(results.digest(), undisturbed().digest());
+    assert_eq!(results.series(), undisturbed().series());
+}
+
+#[test]
+fn on_the_same_rank() {
+    let results = stopped();
+    results.add(with_checkpoints(frequent(SCENE.run())).resume());
+    assert_undisturbed(&results, "on one rank");
+    // Without further checkpoints too.
+    let results = stopped();
+    results.add(frequent(SCENE.run()).resume());
+    assert_undisturbed(&results, "without further checkpoints");
+}
+
+#[test]
+fn on_another_number_of_ranks_and_back() {
+    let results = stopped();
+    results.add(with_checkpoints(frequent(SCENE.run_until(1.3 * STOP))).ranks(3).resume());
+    assert_eq!(results.summary()["ranks"], 3);
+    results.add(with_checkpoints(frequent(SCENE.run())).ranks(2).resume());
+    let resumed_at = results.summary()["resumed_at"].as_f64().unwrap();
+    assert!(resumed_at > 0.0, "{resumed_at}");
+    assert_eq!(results.digest(), undisturbed().digest());
+    let results = stopped();
+    results.add(with_checkpoints(frequent(SCENE.run())).ranks(4).resume());
+    assert_undisturbed(&results, "on four ranks");
+}
+
+#[test]
+fn under_mpirun_and_back() {
+    let Some(program) = mpi_program("resuming under mpirun") else { return };
+    let results = stopped();
+    results.add(frequent(SCENE.run()).checkpoint_every(EVERY).mpi(&program, 2).resume());
+    assert_undisturbed(&results, "from one process to two");
+    let results = Results::new();
+    results.add(frequent(SCENE.run_until(STOP)).checkpoint_every(EVERY).mpi(&program, 4));
+    results.add(with_checkpoints(frequent(SCENE.run())).resume());
+    assert_undisturbed(&results, "from four processes to one");
+}
+
+#[test]
+fn in_three_dimensions() {
+    let scene = SHIPPED[2];
+    let expected = Results::of(scene.run().threads(1)).digest();
+    let results = Results::new();
+    let every = 0.2 * scene.end_time;
+    results.add(scene.run_until(0.55 * scene.end_time).checkpoint_every(every).ranks(2));
+    results.add(scene.run().ranks(3).resume());
+    let resumed_at = results.summary()["resumed_at"].as_f64();
+    assert!(resumed_at.is_some_and(|time| time > 0.0), "{resumed_at:?}");
+    assert_eq!(results.digest(), expected);
+}
+
+#[test]
+fn without_a_checkpoint_it_starts_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = Run::new(write_scene(folder.path(), SMALL)).threads(1);
+    let expected = Results::of(run.clone()).digest();
+    let results = Results::of(run.clone().resume());
+    assert_eq!(results.digest(), expected);
+    assert!(results.summary()["resumed_at"].is_null());
+    // So it does when the folder holds results without checkpoints.
+    results.add(run.resume());
+    assert_eq!(results.digest(), expected);
+}
+
+/// The results of the small scene until half its time, with checkpoints.
+fn small(scene: &Path) -> Results {
+    let run = Run::new(scene).threads(1).end_time(0.1).checkpoint_every(0.02);
+    let results = Results::of(run);
+    assert!(!results.files(".vtkhdf").is_empty(), "no checkpoint was written");
+    results
+}
+
+#[track_caller]
+fn assert_refused(results: &Results, run: Run) {
+    let before = results.contents();
+    let outcome = run.threads(1).resume().out(results.path()).finish();
+    assert!(matches!(outcome.status.code(), Some(1 | 2)), "{outcome}");
+    outcome.message.assert_readable();
+    outcome.message.assert_contains(&["another scene", "--out", "checkpoint-"]);
+    assert!(results.contents() == before, "the refused run changed files");
+}
+
+#[test]
+fn another_scene_or_other_values_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = write_scene(folder.path(), SMALL);
+    let results = small(&scene);
+    assert_refused(&results, Run::new(&scene).set("numerics.cfl=0.9"));
+    assert_refused(&results, Run::new(&scene).set("numerics.spacing=0.025"));
+    assert_refused(&results, Run::new(&scene).set("numerics.precision=double"));
+    let other = tempfile::tempdir().unwrap();
+    let moved = SMALL.replace("max = [0.3, 0.4]", "max = [0.4, 0.3]");
+    assert_refused(&results, Run::new(write_scene(other.path(), &moved)));
+    // What does not change the flow may change: the end, the ranks, the outputs.
+    results.add(Run::new(&scene).set("output.snapshots=0.1").end_time(0.15).ranks(2).resume());
+    assert!(results.summary()["resumed_at"].as_f64().is_some());
+}
