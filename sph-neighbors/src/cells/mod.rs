@@ -11,6 +11,9 @@ use table::Table;
 /// Particles of one parallel task; small inputs stay on the calling thread.
 pub(crate) const TASK: usize = 4096;
 
+/// Columns end in this many elements without meaning, so that rows can be copied by whole lanes.
+pub(crate) const MARGIN: usize = 8;
+
 /// Particles sorted by cell and, in a cell, by id: the canonical order.
 ///
 /// Holds compact copies of the positions for the search, so that positions may move on after it is
@@ -21,9 +24,9 @@ pub(crate) const TASK: usize = 4096;
 #[derive(Debug, Clone)]
 pub struct CellList<const D: usize> {
     grid: Grid<D>,
-    /// Input index by place in canonical order.
+    /// Input index by place in canonical order, and a margin.
     order: Vec<u32>,
-    /// Low 32 bits of the fixed-point coordinates, in canonical order.
+    /// Low 32 bits of the fixed-point coordinates, in canonical order, and a margin.
     coordinates: [Vec<i32>; D],
     table: Table<D>,
     /// Key of the cell of each particle, in input order.
@@ -63,6 +66,11 @@ impl<const D: usize> CellList<D> {
             .map(|x| grid.key(x))
             .collect_into_vec(&mut self.keys);
         sort::sort(&self.keys, ids, &mut self.order, &mut self.table);
+        self.order.extend([0; MARGIN]);
+        if positions.is_empty() {
+            self.coordinates.iter_mut().for_each(Vec::clear);
+            return;
+        }
         for (axis, column) in self.coordinates.iter_mut().enumerate() {
             self.order
                 .par_iter()
@@ -79,16 +87,22 @@ impl<const D: usize> CellList<D> {
 
     /// Number of particles.
     pub fn len(&self) -> usize {
-        self.order.len()
+        self.keys.len()
     }
 
     /// Whether there are no particles.
     pub fn is_empty(&self) -> bool {
-        self.order.is_empty()
+        self.keys.is_empty()
     }
 
     /// Input index of each particle, in canonical order.
     pub fn order(&self) -> &[u32] {
+        &self.order[..self.len()]
+    }
+
+    /// [`order`](Self::order) and a margin.
+    #[inline]
+    pub(crate) fn order_and_margin(&self) -> &[u32] {
         &self.order
     }
 
@@ -114,7 +128,7 @@ impl<const D: usize> CellList<D> {
         self.table.bounds()
     }
 
-    /// Low 32 bits of the fixed-point coordinates along an axis, in canonical order.
+    /// Low 32 bits of the fixed-point coordinates along an axis, in canonical order, and a margin.
     #[inline]
     pub(crate) fn coordinates(&self, axis: usize) -> &[i32] {
         &self.coordinates[axis]

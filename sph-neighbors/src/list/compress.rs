@@ -1,19 +1,19 @@
 //! Eight distance tests at a time, and the positions of the hits without a branch.
 
-use wide::f32x8;
+use wide::{f32x8, u16x8};
 
 /// Lanes of a test.
 pub const LANES: usize = 8;
 
 /// For each pattern of hits among eight candidates, the lanes that hit, first to last.
-static LANES_OF: [[u32; LANES]; 256] = {
+static LANES_OF: [[u16; LANES]; 256] = {
     let mut table = [[0; LANES]; 256];
     let mut pattern = 0;
     while pattern < 256 {
         let (mut lane, mut hits) = (0, 0);
         while lane < LANES {
             if pattern >> lane & 1 == 1 {
-                table[pattern][hits] = lane as u32;
+                table[pattern][hits] = lane as u16;
                 hits += 1;
             }
             lane += 1;
@@ -43,10 +43,9 @@ pub fn less(a: f32x8, b: f32x8) -> u8 {
 /// Writes `first + lane` of every hit of `pattern` at the start of `hits`, and rubbish after them
 /// up to eight elements; returns the number of hits.
 #[inline(always)]
-pub fn compress(pattern: u8, first: u32, hits: &mut [u32; LANES]) -> usize {
-    for (hit, lane) in hits.iter_mut().zip(&LANES_OF[usize::from(pattern)]) {
-        *hit = first + lane;
-    }
+pub fn compress(pattern: u8, first: u16, hits: &mut [u16; LANES]) -> usize {
+    let lanes = u16x8::from(LANES_OF[usize::from(pattern)]);
+    *hits = (lanes + u16x8::splat(first)).to_array();
     usize::from(COUNT_OF[usize::from(pattern)])
 }
 
@@ -59,7 +58,7 @@ mod tests {
         for pattern in 0..=255_u8 {
             let mut hits = [0; LANES];
             let n = compress(pattern, 100, &mut hits);
-            let expected: Vec<u32> =
+            let expected: Vec<u16> =
                 (0..8).filter(|l| pattern >> l & 1 == 1).map(|l| 100 + l).collect();
             assert_eq!(hits[..n], expected);
         }

@@ -9,12 +9,10 @@ use pool::Pool;
 use rayon::prelude::*;
 use search::{Group, Query, Search};
 use std::array::from_fn;
+use std::mem::take;
 
 /// Targets per chunk: a chunk is searched by one task and has memory of its own.
 const CHUNK: usize = 256;
-
-/// Targets of a group: consecutive, in one row of cells, within this many cells along x.
-const GROUP_CELLS: i64 = 2;
 
 /// For each target, the sources within reach, in canonical order.
 ///
@@ -40,6 +38,7 @@ const GROUP_CELLS: i64 = 2;
 pub struct NeighborList {
     chunks: Vec<Chunk>,
     targets: usize,
+    sources: u32,
     pad: usize,
     pool: Pool<Scratch>,
 }
@@ -47,7 +46,7 @@ pub struct NeighborList {
 impl Default for NeighborList {
     /// Lists of no targets.
     fn default() -> Self {
-        Self { chunks: Vec::new(), targets: 0, pad: 1, pool: Pool::default() }
+        Self { chunks: Vec::new(), targets: 0, sources: 0, pad: 1, pool: Pool::default() }
     }
 }
 
@@ -59,7 +58,7 @@ struct Chunk {
     spans: Vec<(u32, u32)>,
     pairs: u64,
     tests: u64,
-    max_index: Option<u32>,
+    largest_filler: u32,
 }
 
 impl NeighborList {
@@ -106,6 +105,7 @@ impl NeighborList {
         let query = Query::new(cells.grid(), reach);
         self.pad = pad.max(1);
         self.targets = targets.len();
+        self.sources = cells.len() as u32;
         self.chunks.resize_with(targets.len().div_ceil(CHUNK), Chunk::default);
         let (pad, pool) = (self.pad, &self.pool);
         self.chunks.par_iter_mut().zip(targets.par_chunks(CHUNK)).enumerate().for_each(
@@ -184,9 +184,13 @@ impl NeighborList {
         targets.par_iter().with_min_len(CHUNK).enumerate().map(count).sum()
     }
 
-    /// Largest index in the lists, padding included.
+    /// The largest index that the lists may hold, padding included: of all sources and fillers.
+    /// None when there are no targets.
+    ///
+    /// One comparison with it replaces a check of every entry.
     pub fn max_index(&self) -> Option<u32> {
-        self.chunks.iter().filter_map(|chunk| chunk.max_index).max()
+        let fillers = self.chunks.iter().map(|chunk| chunk.largest_filler).max()?;
+        Some(fillers.max(self.sources.saturating_sub(1)))
     }
 
     /// Number of distance tests that the last build took.
@@ -220,8 +224,11 @@ impl Chunk {
         pad: usize,
         scratch: &mut Scratch,
     ) {
-        let Scratch { search, entries } = scratch;
-        (self.pairs, self.tests) = (0, 0);
+        let search = &mut scratch.search;
+        // The first time, entries are collected elsewhere to learn how many they are.
+        let known = self.entries.capacity() > 0;
+        let mut entries = take(if known { &mut self.entries } else { &mut scratch.entries });
+        (self.pairs, self.tests, self.largest_filler) = (0, 0, 0);
         self.spans.clear();
         entries.clear();
         let mut first = 0;
@@ -234,31 +241,31 @@ impl Chunk {
                 let start = entries.len();
                 let filler = filler(k);
                 if let Some(group) = &group {
-                    search.test(query, group, &cells.grid().fixed(x), entries);
-                    // An index occurs at most once.
-                    if let Some(own) = entries[start..].iter().position(|&j| j == filler) {
-                        entries.remove(start + own);
-                    }
+                    search.test(query, group, &cells.grid().fixed(x), filler, &mut entries);
                     self.tests += search.candidates() as u64;
                 }
                 let count = entries.len() - start;
                 entries.resize(start + count.next_multiple_of(pad), filler);
                 self.spans.push((start as u32, count as u32));
                 self.pairs += count as u64;
+                self.largest_filler = self.largest_filler.max(filler);
             }
             first += length;
         }
-        self.max_index = entries.iter().copied().max();
-        self.entries.clear();
-        if self.entries.capacity() < entries.len() {
+        if known {
+            self.entries = entries;
+        } else {
             // A little more, so that a later build with a few more neighbours fits.
             self.entries.reserve_exact(entries.len() + entries.len() / 32);
+            self.entries.extend_from_slice(&entries);
+            scratch.entries = entries;
         }
-        self.entries.extend_from_slice(entries);
     }
 }
 
 /// The group that starts `targets`, with its length; none for a target that the grid cannot place.
+///
+/// Targets of a group are consecutive and in one row of cells.
 fn group<const D: usize>(
     grid: &Grid<D>,
     query: &Query,
@@ -275,7 +282,7 @@ fn group<const D: usize>(
             break;
         };
         let away = |axis: usize| ((fixed[axis] >> Grid::<D>::CELL_BITS) - cell[axis]).abs();
-        if away(0) >= GROUP_CELLS || (1..D).any(|axis| away(axis) != 0) {
+        if away(0) >= query.group_cells || (1..D).any(|axis| away(axis) != 0) {
             break;
         }
         low = from_fn(|axis| low[axis].min(fixed[axis]));

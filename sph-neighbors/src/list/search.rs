@@ -3,7 +3,7 @@
 use super::compress::{LANES, compress, less};
 use crate::{CellList, Grid};
 use std::ops::Range;
-use wide::f32x8;
+use wide::{f32x8, i32x8};
 
 /// Coordinates relative to a group stay below this many units, so that they and their differences
 /// are exact in `f32`.
@@ -11,6 +11,9 @@ const EXACT: f64 = 4_194_304.0;
 
 /// Largest reach in cells: fixed-point differences of candidates must not wrap around.
 const MOST_CELLS: f64 = 256.0;
+
+/// Blocks of candidates that are tested before their hits are read: their numbers fit 16 bits.
+const WINDOW: usize = 4096;
 
 /// What to search for.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +24,9 @@ pub struct Query {
     threshold: f32,
     /// The test drops this many bits of the coordinates, to stay exact when reach ≫ cell size.
     drop: u32,
+    /// Targets of a group are in this many cells along x. One reach measures best: longer groups
+    /// test more candidates, shorter ones collect candidates more often.
+    pub group_cells: i64,
 }
 
 impl Query {
@@ -41,8 +47,10 @@ impl Query {
         // Each coordinate is rounded down to a unit of the test: no pair may be lost by that.
         let unit = 2.0_f64.powi(drop);
         let reach = units + unit * (D as f64).sqrt();
+        let group_cells =
+            (units * 0.5_f64.powi(Grid::<D>::CELL_BITS as i32)).round().max(1.0) as i64;
         let threshold = ((reach / unit) * (reach / unit) * (1.0 + 1e-6)) as f32;
-        Self { reach, threshold, drop: drop as u32 }
+        Self { reach, threshold, drop: drop as u32, group_cells }
     }
 }
 
@@ -67,18 +75,21 @@ impl<const D: usize> Group<D> {
 /// The candidates of a group of targets, and room for the hits of one.
 #[derive(Debug, Clone, Default)]
 pub struct Search {
-    /// Coordinates relative to the base of the group, in units of the test, by axis.
+    /// Number of candidates.
+    length: usize,
+    /// Coordinates relative to the base of the group, in units of the test, by axis; longer than
+    /// needed, like the next two.
     coordinates: Vec<Vec<f32>>,
     /// Index of each candidate in the input of the cell list.
     index: Vec<u32>,
-    /// Hits as numbers of candidates.
-    hits: Vec<u32>,
+    /// Hits as numbers of candidates of a window.
+    hits: Vec<u16>,
 }
 
 impl Search {
     /// Number of candidates of the group.
     pub fn candidates(&self) -> usize {
-        self.index.len()
+        self.length
     }
 
     /// Collects the candidates of a group, in canonical order.
@@ -88,28 +99,37 @@ impl Search {
         query: &Query,
         group: &Group<D>,
     ) {
-        self.index.clear();
         self.coordinates.resize_with(D, Vec::new);
-        self.coordinates.iter_mut().for_each(Vec::clear);
+        self.length = 0;
         for_each_row(cells, query.reach, group, |range| {
+            self.make_room(self.length + range.len());
             for (axis, column) in self.coordinates.iter_mut().enumerate() {
-                let base = group.base[axis] as i32;
-                let source = &cells.coordinates(axis)[range.clone()];
-                column.extend(source.iter().map(|c| (c.wrapping_sub(base) >> query.drop) as f32));
+                let base = i32x8::splat(group.base[axis] as i32);
+                let relative = |c: [i32; LANES]| {
+                    f32x8::from_i32x8((i32x8::from(c) - base) >> query.drop).to_array()
+                };
+                let room = &mut column[self.length..];
+                copy_lanes(&cells.coordinates(axis)[range.start..], room, range.len(), relative);
             }
-            self.index.extend_from_slice(&cells.order()[range]);
+            let room = &mut self.index[self.length..];
+            copy_lanes(&cells.order_and_margin()[range.start..], room, range.len(), |i| i);
+            self.length += range.len();
         });
-        self.fill_up();
+        self.make_room(self.length);
+        // Nobody hits the candidates that fill up the last block.
+        for column in &mut self.coordinates {
+            column[self.length..][..LANES].fill(f32::INFINITY);
+        }
     }
 
-    /// Adds candidates that nobody hits up to whole lanes.
-    fn fill_up(&mut self) {
-        let whole = self.index.len().next_multiple_of(LANES);
-        for column in &mut self.coordinates {
-            column.resize(whole, f32::INFINITY);
-        }
-        if self.hits.len() < whole + LANES {
-            self.hits.resize(whole + LANES, 0);
+    /// Makes room for candidates and a block more.
+    fn make_room(&mut self, candidates: usize) {
+        let room = candidates + LANES;
+        if self.index.len() < room {
+            let room = room.next_power_of_two();
+            self.index.resize(room, 0);
+            self.coordinates.iter_mut().for_each(|column| column.resize(room, 0.0));
+            self.hits.resize((WINDOW + 1) * LANES, 0);
         }
     }
 
@@ -120,6 +140,7 @@ impl Search {
         query: &Query,
         group: &Group<D>,
         target: &[i64; D],
+        filler: u32,
         found: &mut Vec<u32>,
     ) {
         let me: [f32x8; D] = std::array::from_fn(|axis| {
@@ -128,22 +149,34 @@ impl Search {
         let threshold = f32x8::splat(query.threshold);
         let columns: [&[[f32; LANES]]; D] =
             std::array::from_fn(|axis| self.coordinates[axis].as_chunks().0);
-        let blocks = columns[0].len();
+        let blocks = self.length.div_ceil(LANES);
         let columns = columns.map(|column| &column[..blocks]);
-        let mut n = 0;
-        for block in 0..blocks {
-            let mut distance2 = f32x8::ZERO;
-            for (column, me) in columns.iter().zip(&me) {
-                let d = f32x8::from(column[block]) - *me;
-                distance2 += d * d;
+        for first in (0..blocks).step_by(WINDOW) {
+            let last = blocks.min(first + WINDOW);
+            let mut n = 0;
+            for block in first..last {
+                let mut distance2 = f32x8::ZERO;
+                for (column, me) in columns.iter().zip(&me) {
+                    let d = f32x8::from(column[block]) - *me;
+                    distance2 += d * d;
+                }
+                let Some(room) = self.hits[n..].first_chunk_mut() else {
+                    break;
+                };
+                n += compress(less(distance2, threshold), ((block - first) * LANES) as u16, room);
             }
-            let pattern = less(distance2, threshold);
-            let Some(room) = self.hits[n..].first_chunk_mut() else {
-                break;
-            };
-            n += compress(pattern, (block * LANES) as u32, room);
+            let index = &self.index[first * LANES..];
+            let start = found.len();
+            found.resize(start + n, 0);
+            let room = &mut found[start..];
+            let mut kept = 0;
+            for &hit in &self.hits[..n] {
+                let j = index[usize::from(hit)];
+                room[kept] = j;
+                kept += usize::from(j != filler);
+            }
+            found.truncate(start + kept);
         }
-        found.extend(self.hits[..n].iter().map(|&hit| self.index[hit as usize]));
     }
 }
 
@@ -178,7 +211,7 @@ fn for_each_row<const D: usize>(
         }
         let along = reach * reach - across;
         if along >= 0.0 {
-            let along = along.sqrt().ceil() as i64;
+            let along = along.sqrt() as i64 + 1;
             row[0] = (low[0] - along) >> bits;
             let range = cells.row(row, (high[0] + along) >> bits);
             if !range.is_empty() {
@@ -190,5 +223,22 @@ fn for_each_row<const D: usize>(
         };
         row[axis] += 1;
         row[1..axis].copy_from_slice(&from[1..axis]);
+    }
+}
+
+/// Maps `length` elements from the start of `source` to the start of `room`, and up to a block more
+/// in both: whole blocks take no remainder loop, and rows are short.
+#[inline(always)]
+fn copy_lanes<S: Copy, T>(
+    source: &[S],
+    room: &mut [T],
+    length: usize,
+    map: impl Fn([S; LANES]) -> [T; LANES],
+) {
+    let blocks = length.div_ceil(LANES);
+    let source = &source.as_chunks::<LANES>().0[..blocks];
+    let room = &mut room.as_chunks_mut::<LANES>().0[..blocks];
+    for (source, room) in source.iter().zip(room) {
+        *room = map(*source);
     }
 }

@@ -1,9 +1,12 @@
 //! Clouds of particles and the plainest search there is.
 #![allow(dead_code)] // Each test program uses a part of it.
 
+use proptest::array::uniform;
+use proptest::collection::vec;
 use proptest::prelude::*;
-use proptest::sample::select;
+use proptest::sample::{Index, select};
 use sph_neighbors::{CellList, Grid, NeighborList};
+use std::array::from_fn;
 
 /// What the search may find beyond the reach, relative to it.
 pub const MARGIN: f64 = 1e-5;
@@ -33,44 +36,54 @@ impl<const D: usize> Cloud<D> {
 /// Random, clustered, collinear, coincident, with outliers far away, of any size from none, around
 /// any centre. Lengths are such that a reach of about 1 finds some neighbours.
 pub fn cloud<const D: usize>() -> impl Strategy<Value = Cloud<D>> {
-    let point = || prop::array::uniform::<_, D>(0.0..4.0);
-    let points = move |n| prop::collection::vec(point(), n);
     let shape = prop_oneof![
-        points(0..200),
-        points(0..3),
-        // Clusters.
-        (
-            points(1..5),
-            prop::collection::vec(
-                (any::<prop::sample::Index>(), prop::array::uniform::<_, D>(-0.3..0.3)),
-                0..200
-            )
-        )
-            .prop_map(
-                |(centres, points): (Vec<[f64; D]>, Vec<(prop::sample::Index, [f64; D])>)| points
-                    .into_iter()
-                    .map(|(i, x)| std::array::from_fn(|a| i.get(&centres)[a] + x[a]))
-                    .collect()
-            ),
-        // On a line along one axis.
-        (points(1..100), 0..D).prop_map(|(mut points, axis)| {
-            points.iter_mut().for_each(|x| (0..D).filter(|&a| a != axis).for_each(|a| x[a] = 0.5));
-            points
+        points::<D>(200),
+        points::<D>(3),
+        clusters::<D>(),
+        line::<D>(),
+        (points::<D>(3), vec(any::<Index>(), 0..80)).prop_map(|(places, who)| {
+            who.iter().filter(|_| !places.is_empty()).map(|i| *i.get(&places)).collect()
         }),
-        // All at one place or two.
-        (points(2..3), prop::collection::vec(0..2_usize, 0..80))
-            .prop_map(|(places, who)| who.into_iter().map(|i| places[i]).collect()),
-        // On a lattice whose spacing divides the reach: many pairs at exactly the reach.
-        prop::collection::vec(prop::array::uniform::<_, D>(0..8_i32), 0..150)
-            .prop_map(|points| points.into_iter().map(|x| x.map(|n| f64::from(n) * 0.5)).collect()),
-        // Splashes far from the rest.
-        (points(0..100), points(1..8)).prop_map(|(mut points, far)| {
-            points.extend(far.iter().map(|x| x.map(|c| (c - 2.0) * 5e4)));
-            points
-        }),
+        lattice::<D>(),
+        splashes::<D>(),
     ];
-    (shape, select(vec![0.0, -3.0, 0.25, 1e4, -1e6])).prop_map(|(points, centre)| {
+    (shape, select(std::vec![0.0, -3.0, 0.25, 1e4, -1e6])).prop_map(|(points, centre)| {
         Cloud::new(points.iter().map(|x| x.map(|c| c + centre)).collect())
+    })
+}
+
+type Points<const D: usize> = Vec<[f64; D]>;
+
+fn points<const D: usize>(most: usize) -> BoxedStrategy<Points<D>> {
+    vec(uniform(0.0..4.0), 0..most).boxed()
+}
+
+fn clusters<const D: usize>() -> impl Strategy<Value = Points<D>> {
+    let offsets = vec((any::<Index>(), uniform::<_, D>(-0.3..0.3)), 0..200);
+    (vec(uniform::<_, D>(0.0..4.0), 1..5), offsets).prop_map(|(centres, offsets)| {
+        let place = |(i, x): &(Index, [f64; D])| from_fn(|a| i.get(&centres)[a] + x[a]);
+        offsets.iter().map(place).collect()
+    })
+}
+
+/// On a line along one axis.
+fn line<const D: usize>() -> impl Strategy<Value = Points<D>> {
+    (points::<D>(100), 0..D).prop_map(|(points, axis)| {
+        points.iter().map(|x| from_fn(|a| if a == axis { x[a] } else { 0.5 })).collect()
+    })
+}
+
+/// On a lattice whose spacing divides a reach of 1: many pairs at exactly that reach.
+fn lattice<const D: usize>() -> impl Strategy<Value = Points<D>> {
+    vec(uniform(0..8_i32), 0..150)
+        .prop_map(|points| points.iter().map(|x| x.map(|n| f64::from(n) * 0.5)).collect())
+}
+
+/// A few particles far from the rest and from each other.
+fn splashes<const D: usize>() -> impl Strategy<Value = Points<D>> {
+    (points::<D>(100), points::<D>(8)).prop_map(|(mut points, far)| {
+        points.extend(far.iter().map(|x| x.map(|c| (c - 2.0) * 5e4)));
+        points
     })
 }
 
