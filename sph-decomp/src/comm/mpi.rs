@@ -74,8 +74,10 @@ impl Mpi {
     ///
     /// The message goes to the standard error stream, because nobody can report it afterwards.
     pub fn abort(&self, message: &str) -> ! {
-        // Nothing can be done about a closed stream at this point.
-        let _ = writeln!(std::io::stderr().lock(), "rank {}: {message}", self.rank());
+        // In one piece, because all ranks and the launcher write to the same stream. Nothing can be
+        // done about a closed stream at this point.
+        let line = format!("rank {}: {message}\n", self.rank());
+        let _ = std::io::stderr().write_all(line.as_bytes());
         self.world.abort(1)
     }
 
