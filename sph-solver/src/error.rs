@@ -65,6 +65,40 @@ pub enum RunError {
         /// The checkpoint.
         path: std::path::PathBuf,
     },
+    /// Started by `mpirun`, but built without MPI.
+    #[error(
+        "this program was started as {processes} processes but was built without MPI: every one of \
+         them would run the whole scene. Build it with `cargo build --release --features mpi`, or \
+         start it once with --ranks {processes}"
+    )]
+    WithoutMpi {
+        /// Number of processes.
+        processes: usize,
+    },
+    /// More ranks than particles.
+    #[error("{ranks} ranks cannot share {particles} particles: use fewer ranks or a finer spacing")]
+    TooManyRanks {
+        /// Number of ranks.
+        ranks: usize,
+        /// Number of particles.
+        particles: usize,
+    },
+    /// The scene cannot be turned into particles.
+    #[error(transparent)]
+    Scene(#[from] crate::scene::SceneError),
+    /// Ranks that are threads failed to start or panicked.
+    #[error("{0}")]
+    Ranks(String),
+    /// There is no checkpoint to continue from.
+    #[error(
+        "there is no checkpoint in {} to resume from. Run without --resume, and with \
+         --checkpoint-every T to write some",
+        path.display()
+    )]
+    NothingToResume {
+        /// The folder.
+        path: std::path::PathBuf,
+    },
     /// The threads of a rank could not be started.
     #[error("threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -86,7 +120,45 @@ pub enum RunError {
     /// The cell grid cannot be laid out.
     #[error(transparent)]
     Grid(#[from] sph_neighbors::GridError),
+    /// The folder for the files could not be made.
+    #[error("the folder {} cannot be made: {source}. Give another with --out", path.display())]
+    Folder {
+        /// The folder.
+        path: std::path::PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// A file could not be read or written.
     #[error(transparent)]
     File(#[from] sph_io::IoError),
+}
+
+impl RunError {
+    /// Whether every rank has met this same error, so that all of them can end in good order.
+    pub fn is_on_all_ranks(&self) -> bool {
+        matches!(
+            self,
+            Self::Diverged { .. }
+                | Self::Left { .. }
+                | Self::StepCollapsed { .. }
+                | Self::TooManyRanks { .. }
+                | Self::Scene(_)
+                | Self::OtherScene { .. }
+                | Self::NothingToResume { .. }
+                | Self::Comm(CommError::DifferentBuild { .. })
+        )
+    }
+
+    /// Whether the scene or the command line is at fault rather than the run.
+    pub fn is_bad_input(&self) -> bool {
+        matches!(
+            self,
+            Self::Scene(_)
+                | Self::TooManyRanks { .. }
+                | Self::WithoutMpi { .. }
+                | Self::OtherScene { .. }
+                | Self::NothingToResume { .. }
+                | Self::Folder { .. }
+        )
+    }
 }

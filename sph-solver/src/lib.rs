@@ -1,7 +1,8 @@
-//! Smoothed particle hydrodynamics: scenes, schemes, time integration and the `sph` program.
+#![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
 pub mod block;
+pub mod cli;
 pub mod eos;
 pub mod error;
 pub mod lio;
@@ -12,6 +13,7 @@ pub mod rank;
 pub mod records;
 pub mod run;
 pub mod scene;
+pub mod setup;
 pub mod simulation;
 pub mod spray;
 pub mod state;

@@ -1,2 +1,5 @@
 //! The `sph` program.
-fn main() {}
+
+fn main() -> std::process::ExitCode {
+    sph_solver::cli::main()
+}

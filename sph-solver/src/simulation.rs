@@ -233,6 +233,8 @@ where
 
     fn rebuild(&mut self) -> Result<(), RunError> {
         let _timer = self.timings.measure(Phase::Rebuild);
+        // A particle without a usable position is a fault, not one that has left the domain.
+        self.clock()?;
         let rebalance = self.counters.rebuilds.is_multiple_of(REBUILDS_PER_BALANCE);
         let gone =
             self.rank.rebuild(self.comm, &self.team, &self.model, P::has_walls(), rebalance)?;

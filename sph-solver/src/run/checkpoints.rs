@@ -66,13 +66,16 @@ pub fn save<const D: usize>(
     Ok(())
 }
 
-/// Particles of this rank, clock and progress from the latest whole checkpoint, or `None` without
-/// one. The number of ranks may differ from that of the run that wrote it.
+/// Particles of this rank, clock and progress from the latest whole checkpoint. The number of ranks may differ from that of the run that wrote it.
 pub fn load<const D: usize>(
     comm: &dyn Communicator,
     plan: &RunPlan<D>,
-) -> Result<Option<(State<D>, Clock, Progress)>, RunError> {
-    let Some(latest) = latest_checkpoint(&plan.out)? else { return Ok(None) };
+) -> Result<(State<D>, Clock, Progress), RunError> {
+    let none = || RunError::NothingToResume { path: plan.out.clone() };
+    if !plan.out.is_dir() {
+        return Err(none());
+    }
+    let latest = latest_checkpoint(&plan.out)?.ok_or_else(none)?;
     let file = read_checkpoint::<D>(&latest.path)?;
     let attributes = &file.attributes;
     if attributes.text("fingerprint")? != plan.fingerprint {
@@ -104,7 +107,7 @@ pub fn load<const D: usize>(
         position: file.positions[share.clone()].to_vec(),
         velocity: file.column::<[f64; D]>("velocity")?[share].to_vec(),
     };
-    Ok(Some((state, clock, progress)))
+    Ok((state, clock, progress))
 }
 
 /// The part of `n` particles that a rank begins with: where they belong is found out later.

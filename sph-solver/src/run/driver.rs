@@ -76,14 +76,21 @@ where
     P: Physics<D>,
 {
     let start = Instant::now();
-    let restart = if plan.resume { checkpoints::load(comm, plan)? } else { None };
-    let (state, clock, progress) = match restart {
-        Some((state, clock, progress)) => (state, Some(clock), progress),
-        None => (state, None, Progress::START),
+    let (state, clock, progress) = if plan.resume {
+        let (state, clock, progress) = checkpoints::load(comm, plan)?;
+        (state, Some(clock), progress)
+    } else {
+        (state, None, Progress::START)
     };
     let resumed_at = clock.map(|clock| clock.time);
     // Outputs of steps that the checkpoint has not seen yet are written again.
     let written_until = resumed_at.map(|time| time.next_down());
+    if comm.rank() == 0 && resumed_at.is_none() {
+        // A later --resume must not find checkpoints of an earlier run.
+        std::fs::create_dir_all(&plan.out)
+            .map_err(|source| RunError::Folder { path: plan.out.clone(), source })?;
+        sph_io::remove_checkpoints(&plan.out, ..)?;
+    }
     let mut files = if comm.rank() == 0 { Some(Files::open(plan, written_until)?) } else { None };
     let mut out = Outputs {
         comm,

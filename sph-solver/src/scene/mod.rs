@@ -37,6 +37,8 @@ pub use numerics::{Equation, Kernel, Numerics, OnLost, Precision, Scheme, SoundS
 pub use output::Output;
 pub use probe::{Axis, Field, Probe, ProbeKind};
 pub use root::Scene;
+pub(crate) use root::vector;
 pub use schema::json_schema;
 pub use shape::{AxisKeys, BoxKeys, PlaneKeys, Shape, ShapeKeys, SphereKeys};
+pub(crate) use suggest::nearest;
 pub use solid::{FluidSide, Solid};

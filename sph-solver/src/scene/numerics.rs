@@ -32,9 +32,9 @@ pub struct Numerics {
     /// 2 √(g H), H the extent of the fluid along gravity (a dam-break front runs at up to 2 √(g H)).
     #[serde(default)]
     pub sound_speed: At<SoundSpeed>,
-    /// Artificial viscosity α: the viscous term has the strength α h c0. 0 leaves the term out.
-    #[serde(default = "default_artificial_viscosity")]
-    pub artificial_viscosity: At<f64>,
+    /// Artificial viscosity α: the viscous term has the strength α h c0. 0 leaves the term out. When
+    /// absent, 0.02 for an inviscid fluid; a fluid with a physical viscosity has no artificial one.
+    pub artificial_viscosity: Option<At<f64>>,
     /// Density diffusion δ of the δ-SPH scheme: the term has the strength δ h c0. 0 leaves it out.
     #[serde(default = "default_density_diffusion")]
     pub density_diffusion: At<f64>,
@@ -56,10 +56,6 @@ fn default_support() -> At<f64> {
 
 fn default_cfl() -> At<f64> {
     At::default_of(1.0)
-}
-
-fn default_artificial_viscosity() -> At<f64> {
-    At::default_of(0.02)
 }
 
 fn default_density_diffusion() -> At<f64> {

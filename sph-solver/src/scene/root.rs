@@ -145,8 +145,35 @@ impl Scene {
         }
     }
 
+    /// Gravity, m/s²; zero when the scene has none.
+    pub fn gravity<const D: usize>(&self) -> [f64; D] {
+        vector(self.gravity.as_ref().map_or(&[], |gravity| gravity.as_slice()))
+    }
+
+    /// Dynamic viscosity of the fluid, Pa s, if it has one.
+    pub fn viscosity(&self) -> Option<f64> {
+        let fluid = self.fluid.values().next()?;
+        fluid.viscosity.map(|viscosity| *viscosity).filter(|viscosity| *viscosity > 0.0)
+    }
+
+    /// Artificial viscosity α: what the scene says, else 0.02 unless the fluid has a physical one.
+    pub fn artificial_viscosity(&self) -> f64 {
+        let usual = if self.viscosity().is_some() { 0.0 } else { 0.02 };
+        self.numerics.artificial_viscosity.map_or(usual, |alpha| *alpha)
+    }
+
     /// The error of `kind` at `place`.
     pub fn error(&self, place: Place, kind: ErrorKind) -> SceneError {
         self.sources.error(place, kind)
     }
+
+    /// The error of `kind` that is not the fault of a text.
+    pub fn error_without_place(&self, kind: ErrorKind) -> SceneError {
+        SceneError::new(kind, None, self.sources.clone())
+    }
+}
+
+/// A checked vector of the scene as an array; missing components are 0.
+pub(crate) fn vector<const D: usize>(numbers: &[f64]) -> [f64; D] {
+    std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0))
 }

@@ -20,7 +20,7 @@ macro_rules! with_shape_keys {
             pub r#box: Option<At<$crate::scene::shape::BoxKeys>>,
             /// A ball (a disc in two dimensions).
             pub sphere: Option<At<$crate::scene::shape::SphereKeys>>,
-            /// A cylinder with flat ends; three dimensions only.
+            /// A cylinder with flat ends (a turned rectangle in two dimensions).
             pub cylinder: Option<At<$crate::scene::shape::AxisKeys>>,
             /// A cylinder with round ends (a stadium in two dimensions).
             pub capsule: Option<At<$crate::scene::shape::AxisKeys>>,
@@ -28,8 +28,8 @@ macro_rules! with_shape_keys {
             pub plane: Option<At<$crate::scene::shape::PlaneKeys>>,
             /// Corners of a simple polygon in either direction; two dimensions only.
             pub polygon: Option<At<Vec<At<Vec<f64>>>>>,
-            /// A closed surface in an STL, OBJ or PLY file, relative to the folder of the scene; three
-            /// dimensions only.
+            /// A closed surface in an STL file, relative to the folder of the scene; three dimensions
+            /// only.
             pub mesh: Option<At<std::path::PathBuf>>,
             /// Everything that is in any of these shapes.
             pub union: Option<At<Vec<At<$crate::scene::shape::ShapeKeys>>>>,

@@ -83,7 +83,10 @@ fn a_whole_scene_is_read() {
     assert_eq!(**scene.gravity.as_ref().unwrap(), [0.0, -9.81]);
     let numerics = &scene.numerics;
     assert_eq!((*numerics.spacing, *numerics.support, *numerics.cfl), (0.02, 3.0, 1.0));
-    assert_eq!((*numerics.artificial_viscosity, *numerics.density_diffusion), (0.02, 0.1));
+    assert_eq!(*numerics.density_diffusion, 0.1);
+    assert_eq!((scene.viscosity(), scene.artificial_viscosity()), (Some(0.001), 0.0));
+    assert_eq!(set(&["fluid.water.viscosity=0"]).unwrap().artificial_viscosity(), 0.02);
+    assert_eq!(scene.gravity(), [0.0, -9.81]);
     assert_eq!((*numerics.sound_speed, numerics.on_lost), (SoundSpeed::Auto, OnLost::Stop));
     assert_eq!((numerics.scheme, numerics.kernel), (Scheme::Delta, Kernel::WendlandC2));
     assert_eq!(
@@ -236,6 +239,10 @@ fn values_out_of_range_are_refused_with_a_reason() {
         "`fluid.water.viscosity` must be 0 or more",
         "inviscid",
     );
+    let negative = "0.02\nartificial_viscosity = -1";
+    assert_edit("0.02", negative, (8, 24), "between 0 and 1", "usual is 0.02");
+    let both = "0.02\nartificial_viscosity = 0.1";
+    assert_edit("0.02", both, (8, 24), "cannot act together", "remove one");
     assert_edit("1.0\n", "0\n", (3, 12), "`end_time` must be positive", "");
     assert_edit(
         "dimension = 2",
@@ -279,14 +286,6 @@ fn dimensions_must_agree() {
         (21, 8),
         "a mesh exists in 3 dimensions only",
         "polygon",
-    );
-    let cylinder = "cylinder = { from = [0, 0], to = [0, 1], radius = 1 }";
-    assert_edit(
-        "box = { min = [0, 0], max = [4, 3] }",
-        cylinder,
-        (21, 12),
-        "a cylinder exists in 3",
-        "disc",
     );
 }
 

@@ -76,13 +76,14 @@ fn numerics(values: &Values<'_>, numerics: &Numerics) -> Result<(), SceneError> 
         let help = "in m/s, about ten times the largest flow speed, or \"auto\"";
         values.positive("numerics.sound_speed", &speed, help)?;
     }
-    for (key, value, usual) in [
-        ("numerics.artificial_viscosity", &numerics.artificial_viscosity, "0.02"),
-        ("numerics.density_diffusion", &numerics.density_diffusion, "0.1"),
-    ] {
+    let strength = |key, value: &At<f64>, usual| {
         let help = format!("usual is {usual}; 0 leaves the term out");
-        values.within(key, value, 0.0..=1.0, "between 0 and 1", &help)?;
+        values.within(key, value, 0.0..=1.0, "between 0 and 1", &help)
+    };
+    if let Some(viscosity) = &numerics.artificial_viscosity {
+        strength("numerics.artificial_viscosity", viscosity, "0.02")?;
     }
+    strength("numerics.density_diffusion", &numerics.density_diffusion, "0.1")?;
     values.within(
         "numerics.skin",
         &numerics.skin,
@@ -98,6 +99,14 @@ fn fluid(values: &Values<'_>, name: &str, fluid: &At<Fluid>) -> Result<(), Scene
     if let Some(viscosity) = &fluid.viscosity {
         let key = format!("{path}.viscosity");
         values.not_negative(&key, viscosity, "in Pa s; leave it out for an inviscid fluid")?;
+        let artificial = values.scene.numerics.artificial_viscosity.filter(|alpha| **alpha > 0.0);
+        if let Some(artificial) = artificial.filter(|_| **viscosity > 0.0) {
+            return Err(values.invalid(
+                artificial.place,
+                format!("`numerics.artificial_viscosity` and `{key}` cannot act together"),
+                "remove one of them",
+            ));
+        }
     }
     if fluid.regions.is_empty() {
         let kind = ErrorKind::Nothing {

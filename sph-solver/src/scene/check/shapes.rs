@@ -117,7 +117,6 @@ fn several(
 
 fn dimension(values: &Values<'_>, shape: &Shape<'_>) -> Result<(), SceneError> {
     let (needed, instead) = match shape {
-        Shape::Cylinder(_) => (3, "in two dimensions, a sphere is a disc and a box a rectangle"),
         Shape::Mesh(_) => (3, "in two dimensions, use a polygon"),
         Shape::Polygon(_) => (2, "in three dimensions, use a mesh"),
         _ => return Ok(()),

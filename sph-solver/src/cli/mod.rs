@@ -1,0 +1,118 @@
+//! The command line of the program `sph`.
+//!
+//! | exit code | meaning |
+//! |---|---|
+//! | 0 | done |
+//! | 1 | the run failed |
+//! | 2 | the scene or the command line is wrong |
+
+mod check;
+mod diagnostics;
+mod progress;
+mod run;
+
+use crate::scene::{Scene, SceneError};
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit code of a failed run.
+const FAILED: u8 = 1;
+/// Exit code of a scene or command line that is wrong.
+const BAD_INPUT: u8 = 2;
+
+/// Smoothed particle hydrodynamics from scene files.
+#[derive(Debug, Parser)]
+#[command(name = "sph", version, about)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Simulate a scene and write snapshots, tables and summary.json
+    Run(run::RunArguments),
+    /// Read a scene and everything it names, and report counts, time step, memory and cost
+    Check(check::CheckArguments),
+}
+
+/// Which scene.
+#[derive(Debug, Args)]
+struct SceneArguments {
+    /// Scene file
+    scene: PathBuf,
+    /// Change a value of the scene, for example --set numerics.spacing=0.01
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    overrides: Vec<String>,
+}
+
+impl SceneArguments {
+    fn read(&self) -> Result<Scene, SceneError> {
+        Scene::read(&self.scene, &self.overrides)
+    }
+}
+
+/// Runs the program with the arguments of this process.
+pub fn main() -> ExitCode {
+    match Arguments::parse().command {
+        Command::Run(arguments) => run::main(&arguments),
+        Command::Check(arguments) => check::main(&arguments),
+    }
+}
+
+/// A time in seconds that can be the length of an interval.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(time) if time > 0.0 && time.is_finite() => Ok(time),
+        Ok(time) => Err(format!("{time} is not positive; give a time in seconds")),
+        Err(_) => Err("give a time in seconds, for example 0.5".into()),
+    }
+}
+
+/// A number of ranks or threads.
+fn count(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if count > 0 => Ok(count),
+        _ => Err("give a whole number from 1".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn arguments_are_read() {
+        let line = "sph run a.toml --out o --end-time 0.5 --set a=1 --set b=2 --ranks 3 --threads 2 \
+                    --checkpoint-every 0.1 --resume --quiet";
+        let Command::Run(run) = Arguments::parse_from(line.split_whitespace()).command else {
+            panic!("not a run");
+        };
+        assert_eq!(run.scene.overrides, ["a=1", "b=2"]);
+        let options = run.options();
+        assert_eq!(options.out, PathBuf::from("o"));
+        assert_eq!((options.ranks, options.threads), (Some(3), Some(2)));
+        assert_eq!((options.end_time, options.checkpoint_every), (Some(0.5), Some(0.1)));
+        assert!(options.resume && run.quiet);
+    }
+
+    #[test]
+    fn bad_numbers_are_refused() {
+        for line in [
+            "sph run a.toml --ranks 0",
+            "sph run a.toml --end-time -1",
+            "sph run a.toml --end-time nan",
+            "sph check a.toml --ranks many",
+            "sph run",
+        ] {
+            assert!(Arguments::try_parse_from(line.split_whitespace()).is_err(), "{line}");
+        }
+    }
+}

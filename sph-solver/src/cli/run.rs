@@ -1,0 +1,128 @@
+//! `sph run`: simulates a scene.
+
+use super::progress::Progress;
+use super::{BAD_INPUT, FAILED, SceneArguments, count, diagnostics, seconds};
+use crate::error::RunError;
+use crate::run::{RunOptions, Summary, World, run};
+use crate::scene::{ErrorKind, SceneError, Sources};
+use clap::Args;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Folder for the results [default: out/ and the name of the scene file]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Simulated time at which the run ends, s, instead of the scene's
+    #[arg(long, value_name = "T", value_parser = seconds, allow_negative_numbers = true)]
+    end_time: Option<f64>,
+    /// Ranks as threads of this process (under mpirun, the ranks are the processes)
+    #[arg(long, value_name = "N", value_parser = count)]
+    ranks: Option<usize>,
+    /// Threads per rank [default: all cores divided by the ranks]
+    #[arg(long, value_name = "N", value_parser = count)]
+    threads: Option<usize>,
+    /// Simulated time between checkpoints, s, instead of the scene's
+    #[arg(long, value_name = "T", value_parser = seconds, allow_negative_numbers = true)]
+    checkpoint_every: Option<f64>,
+    /// Go on from the latest checkpoint in the folder of the results
+    #[arg(long)]
+    resume: bool,
+    /// No progress bar and no closing words
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+impl RunArguments {
+    pub fn options(&self) -> RunOptions {
+        let stem = self.scene.scene.file_stem().unwrap_or_default();
+        RunOptions {
+            out: self.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stem)),
+            end_time: self.end_time,
+            ranks: self.ranks,
+            threads: self.threads,
+            checkpoint_every: self.checkpoint_every,
+            resume: self.resume,
+        }
+    }
+}
+
+pub fn main(arguments: &RunArguments) -> ExitCode {
+    let world = match World::start() {
+        Ok(world) => world,
+        Err(error) => {
+            diagnostics::show_plain(&error);
+            return ExitCode::from(BAD_INPUT);
+        }
+    };
+    match simulate(&world, arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(RunError::Scene(error)) => {
+            diagnostics::show_scene_error(&error);
+            ExitCode::from(BAD_INPUT)
+        }
+        Err(RunError::TooManyRanks { ranks, particles }) => {
+            // The words of `sph check`, which knows this too.
+            let kind = ErrorKind::TooManyRanks { ranks, particles };
+            diagnostics::show_scene_error(&SceneError::new(kind, None, Sources::default()));
+            ExitCode::from(BAD_INPUT)
+        }
+        Err(error) => {
+            // All ranks have met the same error: one of them says it.
+            if world.speaks() {
+                diagnostics::show_plain(&error);
+            }
+            ExitCode::from(if error.is_bad_input() { BAD_INPUT } else { FAILED })
+        }
+    }
+}
+
+fn simulate(world: &World, arguments: &RunArguments) -> Result<(), RunError> {
+    let scene = arguments.scene.read()?;
+    let options = arguments.options();
+    let progress = Progress::new(arguments.quiet || !world.speaks());
+    let result = run(world, &scene, &options, &|status| progress.show(status));
+    progress.finish();
+    let summary = result?;
+    if world.speaks() {
+        let path = options.out.join("summary.json");
+        let text = serde_json::to_string_pretty(&summary).map_err(|error| {
+            RunError::Ranks(format!("the summary cannot be written as JSON: {error}"))
+        })?;
+        sph_io::write_text_atomically(&path, &(text + "\n"))?;
+        if !arguments.quiet {
+            // A closed standard output is no reason to fail a finished run.
+            let _ = writeln!(std::io::stdout(), "{}", closing_words(&summary, &options));
+        }
+    }
+    Ok(())
+}
+
+fn closing_words(summary: &Summary, options: &RunOptions) -> String {
+    let mut text = format!(
+        "{} particles ({} of them walls), {} steps to t = {:.4} s in {:.1} s\n\
+         {:.2} M particle-updates/s, {:.0} M pair interactions/s on {} rank(s) x {} thread(s)",
+        summary.particles.fluid + summary.particles.wall,
+        summary.particles.wall,
+        summary.steps,
+        summary.simulated_time,
+        summary.wall_seconds,
+        summary.particle_updates_per_second / 1e6,
+        summary.pair_interactions_per_second / 1e6,
+        summary.ranks,
+        summary.threads,
+    );
+    if summary.ranks > 1 {
+        let share = 100.0 * summary.exposed_seconds / summary.wall_seconds;
+        text += &format!(", {share:.1} % of the time in exposed communication");
+    }
+    if summary.lost_particles > 0 {
+        let lost = summary.lost_particles;
+        text += &format!("\n{lost} particle(s) left the domain and were removed: see lost.csv");
+    }
+    text + &format!("\nresults in {}", options.out.display())
+}

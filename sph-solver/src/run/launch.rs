@@ -1,0 +1,241 @@
+//! From a scene to ranks that run it.
+
+use super::checkpoints::share;
+use super::digest::Digest;
+use super::driver::Status;
+use super::plan::RunPlan;
+use super::samples::{Probe, Quantity};
+use super::summary::{Meta, Summary};
+use super::table::{Features, Job, Precision, Viscosity, run_job};
+use super::world::World;
+use crate::error::RunError;
+use crate::model::{Model, OnLost};
+use crate::scene::{self, Field, ProbeKind, Scene};
+use crate::setup::{Constants, Particles, Setup};
+use crate::state::State;
+use crate::team::Team;
+use sph_decomp::{Communicator, RanksError, Solo, ThreadRanks, check_same_build};
+use std::path::PathBuf;
+
+/// What the command line adds to a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunOptions {
+    /// Folder for all files.
+    pub out: PathBuf,
+    /// Ends the run at another time, s.
+    pub end_time: Option<f64>,
+    /// Ranks as threads of this process.
+    pub ranks: Option<usize>,
+    /// Threads of each rank; all cores are shared out when absent.
+    pub threads: Option<usize>,
+    /// Seconds of simulated time between checkpoints, instead of the scene's.
+    pub checkpoint_every: Option<f64>,
+    /// Whether to continue from the latest checkpoint in `out`.
+    pub resume: bool,
+}
+
+/// Runs a scene and returns its summary, the same on all processes. `watch` is called after each
+/// step on the process that speaks.
+pub fn run(
+    world: &World,
+    scene: &Scene,
+    options: &RunOptions,
+    watch: &(dyn Fn(Status) + Sync),
+) -> Result<Summary, RunError> {
+    match scene.dimension() {
+        2 => Launch::<2>::new(scene, options)?.run(world, watch),
+        _ => Launch::<3>::new(scene, options)?.run(world, watch),
+    }
+}
+
+struct Launch<const D: usize> {
+    particles: Particles<D>,
+    model: Model<D>,
+    features: Features,
+    plan: RunPlan<D>,
+    ranks: Option<usize>,
+    threads: Option<usize>,
+}
+
+impl<const D: usize> Launch<D> {
+    fn new(scene: &Scene, options: &RunOptions) -> Result<Self, RunError> {
+        let Setup { particles, constants, .. } = Setup::<D>::new(scene)?;
+        let features = features(scene, &constants, &particles);
+        let model = model(&constants);
+        let fingerprint = fingerprint(&model, &features, &particles);
+        let output = &scene.output;
+        let plan = RunPlan {
+            name: scene.name().to_owned(),
+            scene_text: scene.text().to_owned(),
+            fingerprint,
+            out: options.out.clone(),
+            end_time: options.end_time.unwrap_or(*scene.end_time),
+            snapshots: output.snapshots.as_deref().copied(),
+            samples: output.energies.as_deref().copied(),
+            checkpoints: options.checkpoint_every.or(output.checkpoint_every.as_deref().copied()),
+            probes: scene.probe.iter().map(|one| (one.name.to_string(), probe(one))).collect(),
+            resume: options.resume,
+        };
+        let (ranks, threads) = (options.ranks, options.threads);
+        Ok(Self { particles, model, features, plan, ranks, threads })
+    }
+
+    fn run(self, world: &World, watch: &(dyn Fn(Status) + Sync)) -> Result<Summary, RunError> {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        match (world, self.ranks) {
+            (World::Process, None | Some(1)) => {
+                self.rank(&Solo, "solo", self.threads.unwrap_or(cores), watch)
+            }
+            (World::Process, Some(ranks)) => {
+                let threads = self.threads.unwrap_or((cores / ranks).max(1));
+                let summaries = ThreadRanks::run(ranks, |comm| {
+                    self.rank(&comm, "threads", threads, watch)
+                });
+                let summaries = summaries.map_err(|error| match error {
+                    RanksError::Failed { error, .. } => error,
+                    other => RunError::Ranks(other.to_string()),
+                })?;
+                summaries.into_iter().next().ok_or(RunError::Ranks("no rank ran".into()))
+            }
+            #[cfg(feature = "mpi")]
+            (World::Mpi(mpi), _) => {
+                let result = self.rank(mpi, "mpi", self.threads.unwrap_or(1), watch);
+                match result {
+                    // Only this rank knows, and the others wait for it.
+                    Err(error) if !error.is_on_all_ranks() => mpi.abort(&error.to_string()),
+                    result => result,
+                }
+            }
+        }
+    }
+
+    /// One rank of the run. Collective.
+    fn rank(
+        &self,
+        comm: &dyn Communicator,
+        communicator: &'static str,
+        threads: usize,
+        watch: &(dyn Fn(Status) + Sync),
+    ) -> Result<Summary, RunError> {
+        if comm.size() > self.particles.len() {
+            let (ranks, particles) = (comm.size(), self.particles.len());
+            return Err(RunError::TooManyRanks { ranks, particles });
+        }
+        let tag = format!(
+            "sph {} {} {}",
+            env!("CARGO_PKG_VERSION"),
+            sph_kernels::simd_level(),
+            self.plan.fingerprint
+        );
+        check_same_build(&comm, tag.as_bytes())?;
+        let silent = |_: Status| ();
+        run_job(
+            Job {
+                comm,
+                team: Team::new(threads)?,
+                model: self.model.clone(),
+                plan: &self.plan,
+                state: self.state(share(comm, self.particles.len())),
+                watch: if comm.rank() == 0 { watch } else { &silent },
+                meta: Meta {
+                    name: self.plan.name.clone(),
+                    precision: match self.features.precision {
+                        Precision::Mixed => "mixed",
+                        Precision::Double => "double",
+                    },
+                    communicator,
+                    one_process: communicator != "mpi",
+                },
+            },
+            self.features,
+        )
+    }
+
+    fn state(&self, share: std::ops::Range<usize>) -> State<D> {
+        let all = &self.particles;
+        State {
+            id: share.clone().map(|i| i as u64).collect(),
+            kind: all.kind[share.clone()].to_vec(),
+            mass: all.mass[share.clone()].to_vec(),
+            density: all.density[share.clone()].to_vec(),
+            position: all.position[share.clone()].to_vec(),
+            velocity: all.velocity[share].to_vec(),
+        }
+    }
+}
+
+fn model<const D: usize>(constants: &Constants<D>) -> Model<D> {
+    Model {
+        spacing: constants.spacing,
+        support_radius: constants.support_radius,
+        skin: constants.skin,
+        gravity: constants.gravity,
+        equation_of_state: constants.equation_of_state,
+        limits: constants.step_limits(),
+        domain: constants.domain,
+        on_lost: match constants.on_lost {
+            scene::OnLost::Stop => OnLost::Stop,
+            scene::OnLost::Remove => OnLost::Remove,
+        },
+    }
+}
+
+fn features<const D: usize>(
+    scene: &Scene,
+    constants: &Constants<D>,
+    particles: &Particles<D>,
+) -> Features {
+    Features {
+        precision: match scene.numerics.precision {
+            scene::Precision::Mixed => Precision::Mixed,
+            scene::Precision::Double => Precision::Double,
+        },
+        density_diffusion: constants.density_diffusion,
+        viscosity: match (constants.viscosity, constants.artificial_viscosity) {
+            (Some(mu), _) if mu > 0.0 => Viscosity::Laminar(mu),
+            (_, alpha) if alpha > 0.0 => Viscosity::Artificial(alpha),
+            _ => Viscosity::None,
+        },
+        walls: particles.kind.last().is_some_and(|&kind| kind > 0),
+    }
+}
+
+/// Everything that determines the bits of the result, as a text.
+fn fingerprint<const D: usize>(
+    model: &Model<D>,
+    features: &Features,
+    particles: &Particles<D>,
+) -> String {
+    let mut digest = Digest::default();
+    for (i, x) in particles.position.iter().enumerate() {
+        let scalars = [particles.density[i], particles.mass[i], f64::from(particles.kind[i])];
+        let words = x.iter().copied().chain(particles.velocity[i]).chain(scalars);
+        digest.add(i as u64, words);
+    }
+    format!("{D}-D {model:?} {features:?} particles {digest}")
+}
+
+fn probe<const D: usize>(probe: &scene::Probe) -> Probe<D> {
+    match probe.kind {
+        ProbeKind::Front => {
+            // The scene has checked that the axis is there and fits the dimension.
+            Probe::Front { axis: probe.axis.as_ref().map_or(0, |axis| axis.index()) }
+        }
+        ProbeKind::Point => {
+            let at = probe.at.as_deref().map_or(&[][..], Vec::as_slice);
+            let fields = probe.fields.as_deref().map_or(&[][..], Vec::as_slice);
+            Probe::Point {
+                at: std::array::from_fn(|k| at.get(k).copied().unwrap_or(0.0)),
+                quantities: fields.iter().flat_map(|field| quantities::<D>(*field)).collect(),
+            }
+        }
+    }
+}
+
+fn quantities<const D: usize>(field: Field) -> Vec<Quantity> {
+    match field {
+        Field::Pressure => vec![Quantity::Pressure],
+        Field::Density => vec![Quantity::Density],
+        Field::Velocity => (0..D).map(Quantity::Velocity).collect(),
+    }
+}

@@ -1,0 +1,55 @@
+//! Who runs: this process alone, or the processes that `mpirun` has started.
+
+use crate::error::RunError;
+#[cfg(feature = "mpi")]
+use sph_decomp::{Communicator, Mpi};
+
+/// The processes of a run.
+pub enum World {
+    /// This process alone.
+    Process,
+    /// The processes of an MPI job.
+    #[cfg(feature = "mpi")]
+    Mpi(Mpi),
+}
+
+/// Variables that launchers set to the number of processes.
+const SIZE_VARIABLES: [&str; 4] =
+    ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "PMIX_SIZE"];
+
+fn processes() -> Option<usize> {
+    SIZE_VARIABLES.iter().find_map(|name| std::env::var(name).ok()?.parse().ok())
+}
+
+impl World {
+    /// Joins the MPI job that this process was started in, if it was. Call it once, early.
+    pub fn start() -> Result<Self, RunError> {
+        match processes() {
+            None => Ok(Self::Process),
+            #[cfg(feature = "mpi")]
+            Some(_) => Ok(Self::Mpi(Mpi::start()?)),
+            #[cfg(not(feature = "mpi"))]
+            Some(0 | 1) => Ok(Self::Process),
+            #[cfg(not(feature = "mpi"))]
+            Some(processes) => Err(RunError::WithoutMpi { processes }),
+        }
+    }
+
+    /// Whether this process speaks for the run: writes files and messages.
+    pub fn speaks(&self) -> bool {
+        match self {
+            Self::Process => true,
+            #[cfg(feature = "mpi")]
+            Self::Mpi(mpi) => mpi.rank() == 0,
+        }
+    }
+
+    /// Number of MPI processes.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Process => 1,
+            #[cfg(feature = "mpi")]
+            Self::Mpi(mpi) => mpi.size(),
+        }
+    }
+}
