@@ -2,9 +2,14 @@
 //!
 //! They lie on the lattice of the fluid. The fluid has its particles in the middle of cells, so a
 //! wall on the side of cells lies half a spacing from the last fluid layer and half a spacing from
-//! the first wall layer. A wall between cell sides moves to the nearest side, cell by cell: a cell
-//! is material when its middle is. Together, fluid and wall stay a perfect lattice, whatever the
-//! angle of the wall.
+//! the first wall layer. A cell is material when its middle is, so any other wall becomes a stair
+//! whose steps lie up to half a spacing from it, and fluid and walls together stay a perfect
+//! lattice.
+//!
+//! The alternative, moving wall particles along the normal into layers at depths of (k + ½)
+//! spacings, measured worse: particles come as close as 0.17 spacings, and `ΣVW − 1` at the fluid
+//! beside tilted walls grows from 0.005 to between 0.016 and 0.06, at worst 0.19
+//! (`examples/wall_quality.rs`). A smoother wall takes a smaller spacing.
 
 use crate::aabb::Aabb;
 use crate::lattice::{CellBox, Lattice, LatticeError, LatticeRuns, ON_SURFACE, Reach, axis_name};
@@ -249,9 +254,8 @@ mod tests {
     #[test]
     fn periodic_domains_end_at_their_sides_and_see_across_them() {
         let floor = Shape::half_space([0.0, 0.0], [0.0, 1.0]).unwrap();
-        // A plate that covers the floor to the left; the fluid right of the seam keeps its first
-        // columns near fluid.
-        let plate = Shape::cuboid([-1.0, -1.0], [0.8, 2.0]).unwrap();
+        // A plate from the seam to the middle: its left side faces the fluid across the seam.
+        let plate = Shape::cuboid([0.0, -1.0], [0.8, 2.0]).unwrap();
         let solids = [
             Solid::new("floor", floor, FluidSide::Outside),
             Solid::new("plate", plate, FluidSide::Outside),
@@ -266,9 +270,7 @@ mod tests {
         };
         assert_eq!(count(0.55, &found), 1);
         assert_eq!(count(0.45, &found), 0);
-        // The plate is a wall on its other side too, seen through the seam at x = 0: but its
-        // surface is not there, so no particle is less than a support radius below it.
-        assert_eq!(count(0.05, &found), 0);
+        assert_eq!(count(0.05, &found), 1);
         assert_eq!(count(0.05, &walls(&solids, &Domain::new(bounds))), 0);
     }
 

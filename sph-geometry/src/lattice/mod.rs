@@ -53,18 +53,18 @@ pub enum LatticeError {
         /// Highest coordinate, m.
         max: f64,
     },
-    /// More points than can be counted.
+    /// More points than can be visited.
     #[error(
-        "a spacing of {spacing} m makes {cells:.1e} lattice cells, more than the {most:.1e} that \
-         can be visited; use a greater spacing or a smaller domain"
+        "a spacing of {spacing} m makes {cells:.1e} lattice cells in {rows:.1e} rows, more than \
+         can be visited (1e12 and 2e8); use a greater spacing or a smaller domain"
     )]
     TooMany {
         /// The spacing, m.
         spacing: f64,
         /// Number of cells.
         cells: f64,
-        /// The most there may be.
-        most: f64,
+        /// Number of rows of cells along x.
+        rows: f64,
     },
     /// A support radius that is no length.
     #[error("the support radius is {support}; give a positive length in metres")]
@@ -89,8 +89,9 @@ pub enum LatticeError {
     },
 }
 
-/// The most cells that a set may be searched in. Index arithmetic stays far from overflow.
-const MOST_CELLS: f64 = 1e15;
+/// The most cells and rows of cells that a set may be searched in: hours of work, gigabytes of rows.
+const MOST_CELLS: f64 = 1e12;
+const MOST_ROWS: f64 = 2e8;
 
 /// Name of an axis in messages.
 pub(crate) fn axis_name(axis: usize) -> char {
@@ -149,13 +150,14 @@ impl<const D: usize> Lattice<D> {
     }
 
     pub(crate) fn checked(&self, cells: CellBox<D>) -> Result<CellBox<D>, LatticeError> {
-        let sides = (0..D).map(|k| cells.end[k] as f64 - cells.first[k] as f64);
-        let count: f64 = sides.product();
+        let side = |k: usize| cells.end[k] as f64 - cells.first[k] as f64;
+        let rows: f64 = (1..D).map(side).product();
+        let count = side(0) * rows;
         let far = cells.first.iter().chain(&cells.end).any(|i| i.unsigned_abs() > 1 << 52);
-        if count <= MOST_CELLS && !far {
+        if count <= MOST_CELLS && rows <= MOST_ROWS && !far {
             Ok(cells)
         } else {
-            Err(LatticeError::TooMany { spacing: self.spacing, cells: count, most: MOST_CELLS })
+            Err(LatticeError::TooMany { spacing: self.spacing, cells: count, rows })
         }
     }
 }
@@ -238,6 +240,8 @@ mod tests {
         assert!(matches!(cells(big), Err(LatticeError::TooMany { .. })));
         let huge = Aabb::new([1e300; 3], [1e301; 3]);
         assert!(matches!(cells(huge), Err(LatticeError::TooMany { .. })));
+        let tall = Aabb::new([0.0; 3], [1e-9, 1.0, 1e-9]);
+        assert!(matches!(cells(tall), Err(LatticeError::TooMany { .. })));
         let endless = Aabb::new([0.0; 3], [1.0, f64::INFINITY, 1.0]);
         assert!(matches!(cells(endless), Err(LatticeError::Unbounded { axis: 'y', .. })));
         assert_eq!(cells(Aabb::EMPTY).unwrap().rows(), 0);

@@ -231,3 +231,126 @@ impl Shells {
         self.0[a.max(b)] = a.min(b);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn sphere() -> TriangleMesh {
+        TriangleMesh::sphere([0.0; 3], 1.0, 2)
+    }
+
+    proptest! {
+        #[test]
+        fn a_missing_triangle_leaves_a_hole(triangle in 0..320usize) {
+            let mut mesh = sphere();
+            let removed = mesh.corners(triangle);
+            mesh.triangles.remove(triangle);
+            let report = check(&mesh).unwrap();
+            prop_assert!(!report.is_closed() && report.is_oriented());
+            prop_assert_eq!(report.open_edges.count, 3);
+            for place in &report.open_edges.places {
+                let middles = [0, 1, 2].map(|k| {
+                    scaled(0.5, &add_scaled(&removed[k], 1.0, &removed[(k + 1) % 3]))
+                });
+                prop_assert!(middles.iter().any(|m| crate::vector::distance(m, place) < 1e-15));
+            }
+            prop_assert!(matches!(report.error(), Some(MeshError::Open { .. })), "{:?}", report);
+        }
+
+        #[test]
+        fn a_flipped_triangle_disagrees_with_three(triangle in 0..320usize) {
+            let mut mesh = sphere();
+            mesh.triangles[triangle].swap(0, 1);
+            let report = check(&mesh).unwrap();
+            prop_assert!(report.is_closed() && !report.is_oriented());
+            prop_assert_eq!(report.inconsistent_edges.count, 3);
+            prop_assert!(matches!(report.error(), Some(MeshError::Inconsistent { .. })), "{:?}", report);
+        }
+
+        #[test]
+        fn a_triangle_given_twice_is_found(triangle in 0..320usize, turn in 0..3usize) {
+            let mut mesh = sphere();
+            let mut copy = mesh.triangles[triangle];
+            copy.rotate_left(turn);
+            mesh.triangles.push(copy);
+            let report = check(&mesh).unwrap();
+            prop_assert_eq!(report.duplicate_triangles.count, 1);
+            prop_assert_eq!(report.crowded_edges.count, 3);
+            prop_assert!(matches!(report.error(), Some(MeshError::Duplicate { .. })), "{:?}", report);
+        }
+
+        #[test]
+        fn volume_and_area_do_not_depend_on_the_place(shift in -1e4..1e4) {
+            let mesh = TriangleMesh::cuboid([shift; 3], [shift + 1.0, shift + 2.0, shift + 4.0]);
+            let report = check(&mesh).unwrap();
+            prop_assert!((report.volume - 8.0).abs() < 1e-10 && (report.area - 28.0).abs() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn inside_out_is_seen_and_harmless() {
+        let report = check(&sphere().flipped()).unwrap();
+        assert!(report.is_inside_out() && report.error().is_none());
+    }
+
+    #[test]
+    fn two_boxes_that_share_an_edge() {
+        let mut corners = Vec::new();
+        for mesh in [
+            TriangleMesh::cuboid([0.0; 3], [1.0; 3]),
+            TriangleMesh::cuboid([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]),
+        ] {
+            corners.extend((0..12).map(|triangle| mesh.corners(triangle)));
+        }
+        let report = check(&TriangleMesh::from_corners(corners).unwrap()).unwrap();
+        assert_eq!(report.crowded_edges.count, 1);
+        assert_eq!(report.crowded_edges.places, [[1.0, 1.0, 0.5]]);
+        let message = report.error().unwrap().to_string();
+        assert!(message.starts_with("1 edge at (1.000000, 1.000000, 0.500000)"), "{message}");
+    }
+
+    #[test]
+    fn shells_are_counted_and_slivers_do_no_harm() {
+        let mut mesh = sphere();
+        let other = TriangleMesh::cuboid([5.0; 3], [6.0; 3]);
+        let first = mesh.vertices.len() as u32;
+        mesh.vertices.extend(&other.vertices);
+        mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|vertex| vertex + first)));
+        assert_eq!(check(&mesh).unwrap().shells, 2);
+        // Split an edge of the box on one side only and close the gap with a flat triangle.
+        let [a, b, c] = *mesh.triangles.last().unwrap();
+        let new = mesh.vertices.len() as u32;
+        let [from, to] = [a, b].map(|vertex| mesh.vertices[vertex as usize]);
+        mesh.vertices.push(scaled(0.5, &add_scaled(&from, 1.0, &to)));
+        mesh.triangles.pop();
+        mesh.triangles.extend([[a, new, c], [new, b, c], [a, b, new]]);
+        let report = check(&mesh).unwrap();
+        assert_eq!(report.degenerate_triangles.count, 1);
+        assert!(report.error().is_none() && report.shells == 2);
+    }
+
+    #[test]
+    fn a_sheet_of_two_sides_has_no_volume() {
+        // Two triangles over the same corners plus a corner of their own each would be needed for
+        // a volume; a flat pillow of four triangles has none.
+        let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+        let report = check(&TriangleMesh { vertices, triangles }).unwrap();
+        assert!(report.is_closed() && report.is_oriented());
+        assert!(matches!(report.error(), Some(MeshError::NoVolume)));
+    }
+
+    #[test]
+    fn no_mesh_to_speak_of() {
+        assert!(matches!(check(&TriangleMesh::default()), Err(MeshError::Empty)));
+        let mut mesh = sphere();
+        mesh.triangles[3][1] = 4000;
+        let error = check(&mesh).unwrap_err();
+        assert!(matches!(error, MeshError::Index { triangle: 3, index: 4000, .. }));
+        mesh = sphere();
+        mesh.vertices[7][2] = f64::NAN;
+        assert!(matches!(check(&mesh), Err(MeshError::NotFinite { vertex: 7, .. })));
+    }
+}

@@ -139,3 +139,116 @@ fn prepare_ascii(bytes: &[u8]) -> Result<Vec<u8>, String> {
 fn shortest_decimal(x: f32) -> f64 {
     x.to_string().parse().unwrap_or(f64::from(x))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn ascii(mesh: &TriangleMesh, upper: bool) -> String {
+        let mut text = String::from("solid\n");
+        for triangle in 0..mesh.triangles.len() {
+            text.push_str(" facet normal 0 0 0\n  outer loop\n");
+            for [x, y, z] in mesh.corners(triangle) {
+                text.push_str(&format!("   vertex {x:e} {y} {z}\n"));
+            }
+            text.push_str("  endloop\n endfacet\n");
+        }
+        text.push_str("endsolid\n");
+        if upper { text.to_uppercase() } else { text }
+    }
+
+    fn reason(bytes: &[u8]) -> String {
+        match TriangleMesh::from_stl(bytes) {
+            Err(MeshError::Format { reason, .. }) => reason,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_of_few_digits_survive(
+            min in prop::array::uniform3(-9999..9999i32),
+            size in prop::array::uniform3(1..9999i32),
+        ) {
+            // Up to six digits: what people type.
+            let place = |i: i32| f64::from(i) / 1000.0;
+            let max = [0, 1, 2].map(|k| place(min[k] + size[k]));
+            let mesh = TriangleMesh::cuboid(min.map(place), max);
+            let binary = TriangleMesh::from_stl(&mesh.to_stl().unwrap()).unwrap();
+            prop_assert_eq!(binary.bounding_box(), mesh.bounding_box());
+            prop_assert_eq!((binary.vertices.len(), binary.triangles.len()), (8, 12));
+            for upper in [false, true] {
+                let text = ascii(&mesh, upper);
+                prop_assert_eq!(&TriangleMesh::from_stl(text.as_bytes()).unwrap(), &binary);
+            }
+        }
+
+        #[test]
+        fn any_bytes_are_an_error_and_not_a_panic(
+            mut bytes in prop::collection::vec(any::<u8>(), 0..300),
+            solid in any::<bool>(),
+        ) {
+            if solid {
+                bytes.splice(0..0, *b"solid ");
+            }
+            if let Ok(mesh) = TriangleMesh::from_stl(&bytes) {
+                prop_assert!(mesh.vertices.iter().all(crate::vector::is_finite));
+            }
+        }
+    }
+
+    #[test]
+    fn a_binary_file_may_start_with_solid() {
+        let mesh = TriangleMesh::cuboid([0.0; 3], [1.0; 3]);
+        let mut bytes = mesh.to_stl().unwrap();
+        bytes[..11].copy_from_slice(b"solid thing");
+        assert_eq!(TriangleMesh::from_stl(&bytes).unwrap().triangles.len(), 12);
+    }
+
+    #[test]
+    fn several_solids_become_one_mesh() {
+        let one = ascii(&TriangleMesh::cuboid([0.0; 3], [1.0; 3]), false);
+        let two = ascii(&TriangleMesh::cuboid([3.0; 3], [4.0; 3]), false);
+        let mesh = TriangleMesh::from_stl((one + &two).as_bytes()).unwrap();
+        assert_eq!((mesh.vertices.len(), mesh.triangles.len()), (16, 24));
+    }
+
+    #[test]
+    fn broken_files_say_what_is_wrong() {
+        let mesh = TriangleMesh::cuboid([0.0; 3], [1.0; 3]);
+        let binary = mesh.to_stl().unwrap();
+        assert!(reason(&binary[..300]).contains("12 triangles in 684 bytes but has 300"));
+        assert!(reason(b"").contains("only 0 bytes"));
+        assert!(reason(b"# a text file\n").contains("does not start with \"solid\""));
+        let text = ascii(&mesh, false);
+        assert!(
+            reason(text.trim_end().trim_end_matches("endsolid").as_bytes()).contains("endsolid")
+        );
+        assert!(reason(text.replace("vertex 0", "vertex O").as_bytes()).contains("triangle 0"));
+        assert!(reason((text.clone() + "more").as_bytes()).contains("between solids"));
+        let mut infinite = binary;
+        infinite[96..100].copy_from_slice(&f32::INFINITY.to_le_bytes());
+        assert!(reason(&infinite).contains("not finite"));
+    }
+
+    #[test]
+    fn files_are_read_and_written_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("box.stl");
+        let mesh = TriangleMesh::cuboid([0.0; 3], [1.0; 3]);
+        mesh.write_stl(&path).unwrap();
+        assert_eq!(TriangleMesh::read_stl(&path).unwrap().triangles.len(), 12);
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+        let missing = TriangleMesh::read_stl(folder.path().join("tank.stl")).unwrap_err();
+        assert!(missing.to_string().contains("tank.stl"), "{missing}");
+        let nowhere = mesh.write_stl(folder.path().join("no/box.stl")).unwrap_err();
+        assert!(matches!(nowhere, MeshError::Write { .. }));
+    }
+
+    #[test]
+    fn empty_solids_read_as_empty_meshes() {
+        let mesh = TriangleMesh::from_stl(b"solid nothing\nendsolid nothing\n").unwrap();
+        assert!(mesh.triangles.is_empty());
+    }
+}
