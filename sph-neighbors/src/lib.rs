@@ -2,6 +2,7 @@
 //!
 //! * [`Grid`]: cells and fixed-point coordinates that depend on an origin and a cell size only.
 //! * [`CellList`]: particles sorted by cell, then by id.
+//! * [`LevelList`]: the same for particles of different radii, in several grids.
 //! * [`NeighborList`]: who is within reach of whom.
 //!
 //! Lists depend on the set of particles alone: not on the order in which they are given, not on the
@@ -12,8 +13,10 @@
 
 mod cells;
 mod grid;
+mod levels;
 mod list;
 
 pub use cells::CellList;
 pub use grid::{Grid, GridError};
-pub use list::NeighborList;
+pub use levels::LevelList;
+pub use list::{NeighborList, PairReach};

@@ -125,7 +125,7 @@ fn a_reach_of_many_cells() {
 }
 
 #[test]
-#[should_panic(expected = "reach 3 must be positive and at most 256 cells of 0.01")]
+#[should_panic(expected = "reach 3 must be positive and at most 2.56")]
 fn a_reach_of_too_many_cells_is_refused() {
     let grid = Grid::new([0.0; 2], 0.01).unwrap();
     let cells = CellList::build(&grid, &[], &[]);

@@ -134,6 +134,12 @@ impl<const D: usize> CellList<D> {
         &self.coordinates[axis]
     }
 
+    /// Replaces each index of the order by the name at that index.
+    pub(crate) fn rename(&mut self, names: &[u32]) {
+        let length = self.len();
+        self.order[..length].iter_mut().for_each(|i| *i = names[*i as usize]);
+    }
+
     /// Bytes in use.
     pub fn bytes(&self) -> usize {
         self.order.capacity() * 4

@@ -1,18 +1,21 @@
 //! Neighbour lists.
 
+mod chunk;
 mod compress;
+mod plan;
 mod pool;
+mod query;
 mod search;
 
-use crate::{CellList, Grid};
+use crate::{CellList, LevelList};
+use chunk::{CHUNK, Chunk, Scratch};
+use plan::{Plan, Uniform, Variable};
 use pool::Pool;
+use query::Query;
 use rayon::prelude::*;
-use search::{Group, Query, Search};
-use std::array::from_fn;
-use std::mem::take;
 
-/// Targets per chunk: a chunk is searched by one task and has memory of its own.
-const CHUNK: usize = 256;
+pub use plan::PairReach;
+pub(crate) use plan::radius_in_units;
 
 /// For each target, the sources within reach, in canonical order.
 ///
@@ -34,31 +37,15 @@ const CHUNK: usize = 256;
 /// assert_eq!(list.pairs(), 2);
 /// # Ok::<(), sph_neighbors::GridError>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct NeighborList {
     chunks: Vec<Chunk>,
     targets: usize,
     sources: u32,
+    /// Periods of the axes.
+    periods: Vec<Option<f64>>,
     pad: usize,
     pool: Pool<Scratch>,
-}
-
-impl Default for NeighborList {
-    /// Lists of no targets.
-    fn default() -> Self {
-        Self { chunks: Vec::new(), targets: 0, sources: 0, pad: 1, pool: Pool::default() }
-    }
-}
-
-/// Lists of up to [`CHUNK`] targets.
-#[derive(Debug, Clone, Default)]
-struct Chunk {
-    entries: Vec<u32>,
-    /// First entry and true length of each list.
-    spans: Vec<(u32, u32)>,
-    pairs: u64,
-    tests: u64,
-    largest_filler: u32,
 }
 
 impl NeighborList {
@@ -76,7 +63,8 @@ impl NeighborList {
     ///
     /// # Panics
     ///
-    /// When `reach` is negative, not a number or larger than 256 cells.
+    /// When [`Grid::check_reach`](crate::Grid::check_reach) refuses the reach: when it is negative or
+    /// not a number, larger than 256 cells, or larger than half a period.
     pub fn build<const D: usize>(
         cells: &CellList<D>,
         targets: &[[f64; D]],
@@ -102,16 +90,71 @@ impl NeighborList {
         reach: f64,
         pad: usize,
     ) {
-        let query = Query::new(cells.grid(), reach);
+        let plan = Uniform { cells, query: Query::new(cells.grid(), reach) };
+        self.sources = cells.len() as u32;
+        self.periods = cells.grid().periods().to_vec();
+        self.fill(&plan, targets, filler, pad);
+    }
+
+    /// Finds the sources within the reach of each pair, which follows from the radii of both.
+    ///
+    /// For a Verlet skin, add it to all radii. Other arguments are as for [`build`](Self::build);
+    /// sources may be found that are too far by a few times the resolution of the coarsest grid.
+    /// Fastest when targets are in the order of [`LevelList::order`].
+    ///
+    /// # Panics
+    ///
+    /// When `radii` has another length than `targets`, or holds a radius that
+    /// [`Grid::check_radius`](crate::Grid::check_radius) refuses.
+    pub fn build_with_radii<const D: usize>(
+        levels: &LevelList<D>,
+        targets: &[[f64; D]],
+        radii: &[f64],
+        filler: impl Fn(usize) -> u32 + Sync,
+        rule: PairReach,
+        pad: usize,
+    ) -> Self {
+        let mut list = Self::default();
+        list.rebuild_with_radii(levels, targets, radii, filler, rule, pad);
+        list
+    }
+
+    /// Like [`build_with_radii`](Self::build_with_radii), in the memory of this list.
+    ///
+    /// # Panics
+    ///
+    /// As [`build_with_radii`](Self::build_with_radii).
+    pub fn rebuild_with_radii<const D: usize>(
+        &mut self,
+        levels: &LevelList<D>,
+        targets: &[[f64; D]],
+        radii: &[f64],
+        filler: impl Fn(usize) -> u32 + Sync,
+        rule: PairReach,
+        pad: usize,
+    ) {
+        assert_eq!(targets.len(), radii.len(), "every target needs a radius");
+        let plan = Variable::new(levels, radii, rule);
+        self.sources = levels.len() as u32;
+        self.periods = levels.grid().periods().to_vec();
+        self.fill(&plan, targets, filler, pad);
+    }
+
+    fn fill<const D: usize>(
+        &mut self,
+        plan: &impl Plan<D>,
+        targets: &[[f64; D]],
+        filler: impl Fn(usize) -> u32 + Sync,
+        pad: usize,
+    ) {
         self.pad = pad.max(1);
         self.targets = targets.len();
-        self.sources = cells.len() as u32;
         self.chunks.resize_with(targets.len().div_ceil(CHUNK), Chunk::default);
         let (pad, pool) = (self.pad, &self.pool);
         self.chunks.par_iter_mut().zip(targets.par_chunks(CHUNK)).enumerate().for_each(
             |(number, (chunk, targets))| {
-                let filler = |k| filler(number * CHUNK + k);
-                pool.with(|scratch| chunk.fill(cells, &query, targets, filler, pad, scratch));
+                let first = number * CHUNK;
+                pool.with(|scratch| chunk.fill(plan, targets, first, &filler, pad, scratch));
             },
         );
     }
@@ -163,7 +206,8 @@ impl NeighborList {
         self.chunks.iter().map(|chunk| chunk.pairs).sum()
     }
 
-    /// Number of pairs that are nearer than `distance` now, given the present positions.
+    /// Number of pairs that are nearer than `distance` now, given the present positions. Distances
+    /// are to the nearest image if the grid is periodic.
     ///
     /// # Panics
     ///
@@ -175,8 +219,13 @@ impl NeighborList {
         distance: f64,
     ) -> u64 {
         assert_eq!(targets.len(), self.targets, "one position per target");
+        let along = |axis: usize, d: f64| match self.periods.get(axis).copied().flatten() {
+            Some(period) => d - period * (d / period).round(),
+            None => d,
+        };
         let near = |x: &[f64; D], y: &[f64; D]| {
-            (0..D).map(|axis| (x[axis] - y[axis]).powi(2)).sum::<f64>() < distance * distance
+            let squares = (0..D).map(|axis| along(axis, x[axis] - y[axis]).powi(2));
+            squares.sum::<f64>() < distance * distance
         };
         let count = |(t, x): (usize, &[f64; D])| {
             self.neighbors(t).iter().filter(|&&s| near(x, &sources[s as usize])).count() as u64
@@ -200,94 +249,6 @@ impl NeighborList {
 
     /// Bytes in use.
     pub fn bytes(&self) -> usize {
-        let chunk = |chunk: &Chunk| {
-            size_of::<Chunk>() + chunk.entries.capacity() * 4 + chunk.spans.capacity() * 8
-        };
-        self.chunks.iter().map(chunk).sum()
+        self.chunks.iter().map(Chunk::bytes).sum()
     }
-}
-
-/// Working memory of a task.
-#[derive(Debug, Default)]
-struct Scratch {
-    search: Search,
-    entries: Vec<u32>,
-}
-
-impl Chunk {
-    fn fill<const D: usize>(
-        &mut self,
-        cells: &CellList<D>,
-        query: &Query,
-        targets: &[[f64; D]],
-        filler: impl Fn(usize) -> u32,
-        pad: usize,
-        scratch: &mut Scratch,
-    ) {
-        let search = &mut scratch.search;
-        // The first time, entries are collected elsewhere to learn how many they are.
-        let known = self.entries.capacity() > 0;
-        let mut entries = take(if known { &mut self.entries } else { &mut scratch.entries });
-        (self.pairs, self.tests, self.largest_filler) = (0, 0, 0);
-        self.spans.clear();
-        entries.clear();
-        let mut first = 0;
-        while first < targets.len() {
-            let (length, group) = group(cells.grid(), query, &targets[first..]);
-            if let Some(group) = &group {
-                search.collect(cells, query, group);
-            }
-            for (k, x) in targets.iter().enumerate().skip(first).take(length) {
-                let start = entries.len();
-                let filler = filler(k);
-                if let Some(group) = &group {
-                    search.test(query, group, &cells.grid().fixed(x), filler, &mut entries);
-                    self.tests += search.candidates() as u64;
-                }
-                let count = entries.len() - start;
-                entries.resize(start + count.next_multiple_of(pad), filler);
-                self.spans.push((start as u32, count as u32));
-                self.pairs += count as u64;
-                self.largest_filler = self.largest_filler.max(filler);
-            }
-            first += length;
-        }
-        if known {
-            self.entries = entries;
-        } else {
-            // A little more, so that a later build with a few more neighbours fits.
-            self.entries.reserve_exact(entries.len() + entries.len() / 32);
-            self.entries.extend_from_slice(&entries);
-            scratch.entries = entries;
-        }
-    }
-}
-
-/// The group that starts `targets`, with its length; none for a target that the grid cannot place.
-///
-/// Targets of a group are consecutive and in one row of cells.
-fn group<const D: usize>(
-    grid: &Grid<D>,
-    query: &Query,
-    targets: &[[f64; D]],
-) -> (usize, Option<Group<D>>) {
-    let Some(mut low) = grid.place(&targets[0]) else {
-        return (1, None);
-    };
-    let mut high = low;
-    let cell = low.map(|q| q >> Grid::<D>::CELL_BITS);
-    let mut length = 1;
-    for x in &targets[1..] {
-        let Some(fixed) = grid.place(x) else {
-            break;
-        };
-        let away = |axis: usize| ((fixed[axis] >> Grid::<D>::CELL_BITS) - cell[axis]).abs();
-        if away(0) >= query.group_cells || (1..D).any(|axis| away(axis) != 0) {
-            break;
-        }
-        low = from_fn(|axis| low[axis].min(fixed[axis]));
-        high = from_fn(|axis| high[axis].max(fixed[axis]));
-        length += 1;
-    }
-    (length, Some(Group::new(query, low, high)))
 }
