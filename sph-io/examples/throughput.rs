@@ -20,9 +20,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&folder)?;
 
     let ids: Vec<u64> = (0..u64::from(n)).collect();
-    let spread = |i: u64, k: f64| (i as f64 * k).fract();
+    // Multiples of square roots do not repeat, so that nothing packs better than in a simulation.
     let positions: Vec<[f64; 3]> =
-        ids.iter().map(|&i| [spread(i, 0.618), spread(i, 0.414), spread(i, 0.732)]).collect();
+        ids.iter().map(|&i| [2.0, 3.0, 5.0].map(|k: f64| (i as f64 * k.sqrt()).fract())).collect();
     let velocities: Vec<[f64; 3]> = positions.iter().map(|x| x.map(f64::sin)).collect();
     let density: Vec<f64> = positions.iter().map(|x| 1000.0 + x[0]).collect();
     let mass = vec![1e-3; positions.len()];

@@ -7,7 +7,7 @@ use bytemuck::Pod;
 use crate::IoError;
 
 macro_rules! numbers {
-    ($($variant:ident, $number:ty, $vtk:literal, $what:literal;)*) => {
+    ($($variant:ident, $number:ty, $what:literal;)*) => {
         /// Machine type of one number of a column.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[non_exhaustive]
@@ -26,11 +26,6 @@ macro_rules! numbers {
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => stringify!($number),)* }
-            }
-
-            /// The name in VTK's XML files.
-            pub(crate) const fn vtk_name(self) -> &'static str {
-                match self { $(Self::$variant => $vtk,)* }
             }
         }
 
@@ -58,6 +53,19 @@ macro_rules! numbers {
             #[must_use]
             pub fn bytes(&self) -> &[u8] {
                 match self { $(Self::$variant(numbers) => bytemuck::cast_slice(numbers),)* }
+            }
+        }
+
+        impl Column<'_> {
+            /// The selected rows as VTK wants them: vectors of the plane get a zero third
+            /// component. Borrowed when they are so already.
+            pub(crate) fn in_space(&self, selection: Option<&[u32]>) -> Column<'_> {
+                let values = match &self.values {
+                    $(Values::$variant(numbers) => {
+                        Values::$variant(in_space(numbers, self.components, selection))
+                    })*
+                };
+                Column { values, components: padded(self.components) }
             }
         }
 
@@ -89,13 +97,13 @@ macro_rules! numbers {
 }
 
 numbers! {
-    F32, f32, "Float32", "32-bit floating point.";
-    F64, f64, "Float64", "64-bit floating point.";
-    U8, u8, "UInt8", "8-bit unsigned integers.";
-    U16, u16, "UInt16", "16-bit unsigned integers.";
-    U32, u32, "UInt32", "32-bit unsigned integers.";
-    U64, u64, "UInt64", "64-bit unsigned integers.";
-    I64, i64, "Int64", "64-bit signed integers.";
+    F32, f32, "32-bit floating point.";
+    F64, f64, "64-bit floating point.";
+    U8, u8, "8-bit unsigned integers.";
+    U16, u16, "16-bit unsigned integers.";
+    U32, u32, "32-bit unsigned integers.";
+    U64, u64, "64-bit unsigned integers.";
+    I64, i64, "64-bit signed integers.";
 }
 
 impl Values<'_> {
@@ -188,6 +196,10 @@ impl<'a> Column<'a> {
         &self.values
     }
 
+    pub(crate) fn into_values(self) -> Values<'a> {
+        self.values
+    }
+
     /// The rows, when they are of type `T`.
     #[must_use]
     pub fn view<T: Element>(&self) -> Option<&[T]> {
@@ -199,6 +211,30 @@ impl<'a> Column<'a> {
     pub(crate) fn type_name(&self) -> String {
         type_name(self.values.scalar(), self.components)
     }
+}
+
+/// Components in the file of a row of `components`: VTK knows no vectors in the plane.
+pub(crate) const fn padded(components: usize) -> usize {
+    if components == 2 { 3 } else { components }
+}
+
+fn in_space<'v, T: Number>(
+    numbers: &'v [T],
+    components: usize,
+    selection: Option<&[u32]>,
+) -> Cow<'v, [T]> {
+    let width = padded(components);
+    let rows = selection.map_or(numbers.len() / components, <[u32]>::len);
+    if selection.is_none() && width == components {
+        return Cow::Borrowed(numbers);
+    }
+    let mut out = Vec::with_capacity(rows * width);
+    for row in 0..rows {
+        let start = selection.map_or(row, |selection| selection[row] as usize) * components;
+        out.extend_from_slice(&numbers[start..start + components]);
+        out.resize((row + 1) * width, T::zeroed());
+    }
+    Cow::Owned(out)
 }
 
 fn type_name(scalar: Scalar, components: usize) -> String {
@@ -266,6 +302,8 @@ pub(crate) fn check_name(name: &str) -> Result<(), IoError> {
         "it is empty"
     } else if name.chars().any(char::is_control) {
         "it holds a control character"
+    } else if name.contains(['\u{fffe}', '\u{ffff}']) {
+        "it holds a character that XML does not know"
     } else if name.contains(['/', '\\']) || name == "." || name == ".." {
         "it reads as a path"
     } else {

@@ -1,7 +1,7 @@
 //! The particles of one moment, borrowed from whoever holds them.
 
+use crate::IoError;
 use crate::column::{Column, check_columns};
-use crate::{IoError, Scalar, Values};
 
 /// Positions and named columns of the particles at one time.
 ///
@@ -77,71 +77,5 @@ impl<'a, const D: usize> ParticleFrame<'a, D> {
             Some(&index) => Err(IoError::Selection { index, particles }),
             None => Ok(()),
         }
-    }
-}
-
-/// Components in the file of a row of `components`: VTK knows no vectors in the plane.
-pub(crate) const fn padded(components: usize) -> usize {
-    if components == 2 { 3 } else { components }
-}
-
-/// Rows of numbers as a VTK file wants them: vectors of two components get a zero third one.
-pub(crate) struct Rows<'a> {
-    pub(crate) scalar: Scalar,
-    pub(crate) components: usize,
-    bytes: &'a [u8],
-    row: usize,
-}
-
-impl<'a> Rows<'a> {
-    pub(crate) fn new(values: &'a Values<'_>, components: usize) -> Self {
-        Self::from_bytes(values.scalar(), components, values.bytes())
-    }
-
-    pub(crate) fn from_bytes(scalar: Scalar, components: usize, bytes: &'a [u8]) -> Self {
-        let padded = padded(components);
-        Self { scalar, components: padded, bytes, row: components * scalar.size() }
-    }
-
-    /// Bytes of one row in the file.
-    pub(crate) fn row_in_file(&self) -> usize {
-        self.components * self.scalar.size()
-    }
-
-    /// Gives the rows to `sink` in pieces of bounded size, so that no copy of a column is made.
-    pub(crate) fn for_each_piece<E>(
-        &self,
-        selection: Option<&[u32]>,
-        mut sink: impl FnMut(&[u8]) -> Result<(), E>,
-    ) -> Result<(), E> {
-        const ROWS: usize = 8192;
-        let width = self.row_in_file();
-        if selection.is_none() && width == self.row {
-            return sink(self.bytes);
-        }
-        // Only the leading `row` bytes of each slot are ever written, the rest stays zero.
-        let mut buffer = vec![0_u8; ROWS * width];
-        match selection {
-            Some(selection) => {
-                for indices in selection.chunks(ROWS) {
-                    for (slot, &i) in buffer.chunks_exact_mut(width).zip(indices) {
-                        let start = i as usize * self.row;
-                        slot[..self.row].copy_from_slice(&self.bytes[start..start + self.row]);
-                    }
-                    sink(&buffer[..indices.len() * width])?;
-                }
-            }
-            None => {
-                for rows in self.bytes.chunks(ROWS * self.row) {
-                    for (slot, row) in
-                        buffer.chunks_exact_mut(width).zip(rows.chunks_exact(self.row))
-                    {
-                        slot[..self.row].copy_from_slice(row);
-                    }
-                    sink(&buffer[..rows.len() / self.row * width])?;
-                }
-            }
-        }
-        Ok(())
     }
 }

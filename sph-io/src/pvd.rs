@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use crate::IoError;
 use crate::atomic::write_text_atomically;
-use crate::vtu::escape;
 
 /// One file of the index.
 #[derive(Clone, Debug, PartialEq)]
@@ -195,6 +194,12 @@ fn parse(text: &str) -> Result<Vec<PvdEntry>, (usize, String)> {
         });
     }
     Ok(entries)
+}
+
+/// Text as the value of an XML attribute.
+fn escape(text: &str) -> String {
+    // The ampersand first: those of the others stay.
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 fn unescape(value: &str) -> String {

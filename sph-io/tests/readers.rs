@@ -22,6 +22,9 @@ fn readers_present() -> bool {
     present
 }
 
+/// A name that XML can only carry escaped.
+const PRESSURE: &str = " pressure <p & \"q\"> 'µ' ]]> ";
+
 fn expect<T: bytemuck::Pod>(folder: &Path, name: &str, kind: &str, components: usize, data: &[T]) {
     let path = folder.join("expected").join(format!("{name}.{kind}.{components}"));
     fs::write(path, bytemuck::cast_slice(data)).unwrap();
@@ -43,25 +46,35 @@ fn check<const D: usize>(n: u64) {
     let body: Vec<u16> = ids.iter().map(|&i| (i % 60_000) as u16).collect();
     let colour: Vec<u32> = ids.iter().map(|&i| i as u32).collect();
     let stress: Vec<[f64; 6]> = ids.iter().map(|&i| [i as f64; 6]).collect();
+    let limit: Vec<f32> = [f32::NAN, f32::INFINITY, -f32::INFINITY, 1.0, f32::MIN_POSITIVE]
+        .into_iter()
+        .cycle()
+        .take(ids.len())
+        .collect();
+    let signed: Vec<i64> = ids.iter().map(|&i| !(i as i64)).collect();
     expect(folder, "Points", "float64", D, &positions);
     expect(folder, "velocity", "float32", D, &velocity);
-    expect(folder, "pressure <p & \"q\">", "float32", 1, &pressure);
+    expect(folder, PRESSURE, "float32", 1, &pressure);
     expect(folder, "density", "float64", 1, &density);
     expect(folder, "kind", "uint8", 1, &kind);
     expect(folder, "body", "uint16", 1, &body);
     expect(folder, "colour", "uint32", 1, &colour);
     expect(folder, "stress", "float64", 6, &stress);
+    expect(folder, "limit", "float32", 1, &limit);
+    expect(folder, "signed", "int64", 1, &signed);
     expect(folder, "id", "uint64", 1, &ids);
 
     let frame = |time| {
         ParticleFrame::new(time, &positions)
             .with("velocity", &velocity)
-            .with("pressure <p & \"q\">", &pressure)
+            .with(PRESSURE, &pressure)
             .with("density", &density)
             .with("kind", &kind)
             .with("body", &body)
             .with("colour", &colour)
             .with("stress", &stress)
+            .with("limit", &limit)
+            .with("signed", &signed)
             .with("id", &ids)
     };
     let backwards: Vec<u32> = (0..n as u32).rev().collect();
@@ -73,12 +86,14 @@ fn check<const D: usize>(n: u64) {
 
     let state = Checkpoint::new(0.5, 120, &ids[..], &positions[..])
         .with("velocity", &velocity)
-        .with("pressure <p & \"q\">", &pressure)
+        .with(PRESSURE, &pressure)
         .with("density", &density)
         .with("kind", &kind)
         .with("body", &body)
         .with("colour", &colour)
         .with("stress", &stress)
+        .with("limit", &limit)
+        .with("signed", &signed)
         .with_attribute("dt", 1e-4)
         .with_attribute("scene", "# Fluß\ndimension = 3\n")
         .with_attribute("body", [0.5, -1.5]);
@@ -98,6 +113,8 @@ fn check<const D: usize>(n: u64) {
 fn vtk_and_h5py_find_every_number() {
     if readers_present() {
         check::<2>(1000);
+        // Every array just fills blocks of the packing.
+        check::<2>(32_768);
         // More than one piece of a selection and more than one compressed chunk.
         check::<3>(70_000);
     }

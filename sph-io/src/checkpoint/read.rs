@@ -8,7 +8,7 @@ use super::pure::PureReader;
 use super::schema::{FORMAT_VERSION, ID, POINT_DATA, PRIVATE, VTK};
 use super::{Attributes, Checkpoint};
 use crate::column::Column;
-use crate::frame::padded;
+use crate::column::padded;
 use crate::{IoError, Scalar};
 
 /// Reads a whole state.

@@ -1,6 +1,5 @@
 //! From a state to a file.
 
-use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
@@ -14,8 +13,9 @@ use super::{Attribute, Checkpoint};
 use crate::IoError;
 use crate::atomic::write_atomically;
 use crate::column::{Column, check_name};
-use crate::frame::{Rows, padded};
-use crate::vtu::VTK_VERTEX;
+
+/// VTK's number for a cell that is a single point.
+const VTK_VERTEX: u8 = 1;
 
 /// Writes a state, whole or not at all.
 ///
@@ -56,13 +56,13 @@ fn put<const D: usize>(
         out.dataset(VTK, name, &count, false)?;
     }
     let positions = Column::from(&state.positions[..]);
-    out.dataset(VTK, "Points", &padded_column(&positions), false)?;
+    out.dataset(VTK, "Points", &positions.in_space(None), false)?;
     out.dataset(VTK, "Connectivity", &Column::from((0..n as i64).collect::<Vec<_>>()), true)?;
     out.dataset(VTK, "Offsets", &Column::from((0..=n as i64).collect::<Vec<_>>()), true)?;
     out.dataset(VTK, "Types", &Column::from(vec![VTK_VERTEX; state.len()]), true)?;
     out.dataset(POINT_DATA, ID, &Column::from(&state.ids[..]), false)?;
     for (name, column) in &state.columns {
-        out.dataset(POINT_DATA, name, &padded_column(column), false)?;
+        out.dataset(POINT_DATA, name, &column.in_space(None), false)?;
     }
     out.dataset(FIELD_DATA, "TimeValue", &Column::from(vec![state.time]), false)?;
 
@@ -84,19 +84,4 @@ fn put<const D: usize>(
         out.attribute(PRIVATE, name, value)?;
     }
     out.finish(file)
-}
-
-/// The column with rows as VTK wants them; borrowed when they are so already.
-fn padded_column<'c>(column: &'c Column<'_>) -> Cow<'c, Column<'c>> {
-    if padded(column.components()) == column.components() {
-        return Cow::Borrowed(column);
-    }
-    let rows = Rows::new(column.values(), column.components());
-    let mut bytes = Vec::with_capacity(column.rows() * rows.row_in_file());
-    let done: Result<(), std::convert::Infallible> = rows.for_each_piece(None, |piece| {
-        bytes.extend_from_slice(piece);
-        Ok(())
-    });
-    let Ok(()) = done;
-    Cow::Owned(Column::from_bytes(rows.scalar, &bytes, rows.components))
 }
