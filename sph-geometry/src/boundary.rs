@@ -182,14 +182,15 @@ mod tests {
             let all: Vec<[f64; 2]> = (-10..20)
                 .flat_map(|y| (-10..30).map(move |x| lattice().point(&[x, y])))
                 .collect();
+            let on = ON_SURFACE * lattice::<2>().spacing();
             let depth = |x: &[f64; 2]| depth_in_solids(&solids, x);
-            let is_free = |x: &&[f64; 2]| domain.bounds.contains(x) && depth(x) < -1e-9;
+            let is_free = |x: &&[f64; 2]| domain.bounds.contains(x) && depth(x) < -on;
             let free: Vec<&[f64; 2]> = all.iter().filter(is_free).collect();
             let mut expected = WallParticles::default();
             for x in &all {
                 let near = free.iter().any(|cell| to_cell(x, cell) < SUPPORT - 1e-9);
-                if near && depth(x) >= -1e-9 && depth(x) < SUPPORT - 1e-9 {
-                    let owner = solids.iter().position(|s| s.depth_in_solid(x) >= -1e-9).unwrap();
+                if near && depth(x) >= -on && depth(x) < SUPPORT - on {
+                    let owner = solids.iter().position(|s| s.depth_in_solid(x) >= -on).unwrap();
                     expected.positions.push(*x);
                     expected.solids.push(owner as u32);
                 }
