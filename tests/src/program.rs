@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub fn program() -> PathBuf {
     let path = match env::var_os("SPH_PROGRAM") {
         Some(path) => PathBuf::from(path),
-        None => workspace().join("target/release/sph"),
+        None => target().join("release/sph"),
     };
     path.canonicalize().unwrap_or_else(|error| {
         panic!(
@@ -21,6 +21,12 @@ pub fn program() -> PathBuf {
             path.display()
         )
     })
+}
+
+/// Cargo's target folder: the tests lie in it under PROFILE/deps.
+fn target() -> PathBuf {
+    let test = env::current_exe().expect("the system names this program");
+    test.ancestors().nth(3).map_or_else(|| workspace().join("target"), Into::into)
 }
 
 /// The program built with the feature `mpi`, or `None`, said on standard error, when

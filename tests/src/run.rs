@@ -257,6 +257,21 @@ impl Running {
         self.outcome()
     }
 
+    /// SIGKILL to one rank of an MPI job.
+    ///
+    /// # Panics
+    ///
+    /// When there are no ranks.
+    pub fn kill_a_rank(&self) {
+        let launcher = self.child.id();
+        let children =
+            std::fs::read_to_string(format!("/proc/{launcher}/task/{launcher}/children"));
+        let children = children.expect("the launcher runs");
+        let rank = children.split_whitespace().last().expect("mpirun has children");
+        let killed = Command::new("kill").args(["-KILL", rank]).status();
+        assert!(killed.is_ok_and(|status| status.success()), "{rank} was not killed");
+    }
+
     #[track_caller]
     fn pause(&mut self) {
         if Instant::now() > self.deadline {

@@ -31,9 +31,9 @@ pub struct Reduced {
 
 /// The shipped scenes, large enough for several rebuilds, migrations and partitions.
 pub const SHIPPED: [Reduced; 3] = [
-    Reduced { name: "dam-break-2d", dimension: 2, spacing: 0.01, end_time: 0.4 },
-    Reduced { name: "hydrostatic-2d", dimension: 2, spacing: 0.02, end_time: 0.2 },
-    Reduced { name: "dam-break-3d", dimension: 3, spacing: 0.04, end_time: 0.4 },
+    Reduced { name: "dam-break-2d", dimension: 2, spacing: 0.025, end_time: 0.4 },
+    Reduced { name: "hydrostatic-2d", dimension: 2, spacing: 0.025, end_time: 0.25 },
+    Reduced { name: "dam-break-3d", dimension: 3, spacing: 0.04, end_time: 0.5 },
 ];
 
 impl Reduced {

@@ -1,16 +1,14 @@
-//! Reads `.vtu` files with raw appended data, checking that every byte is accounted for.
+//! Reads `.vtu` files strictly.
 
-use crate::series::attribute;
-use std::fs;
 use std::path::Path;
+use vtkio::Vtk;
+use vtkio::model::{Attribute, DataSet};
 
 /// An array of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
     /// Its name.
     pub name: String,
-    /// VTK's name of its type.
-    pub kind: String,
     /// Numbers per point.
     pub components: usize,
     /// The numbers.
@@ -22,7 +20,7 @@ pub struct Array {
 pub struct Vtu {
     /// Number of points.
     pub points: usize,
-    /// Positions, point arrays and cells.
+    /// Positions under the name `Points`, then the point arrays.
     pub arrays: Vec<Array>,
 }
 
@@ -39,87 +37,51 @@ impl Vtu {
     }
 }
 
-const TAIL: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
-
-/// Reads a file strictly.
+/// Reads a file whose cells are its points.
 ///
 /// # Panics
 ///
 /// When it is cut, or holds other than what its head says.
 #[track_caller]
 pub fn read_vtu(path: &Path) -> Vtu {
-    let bytes = fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    parse(&bytes).unwrap_or_else(|problem| panic!("{}: {problem}", path.display()))
+    read(path).unwrap_or_else(|problem| panic!("{}: {problem}", path.display()))
 }
 
-fn parse(bytes: &[u8]) -> Result<Vtu, String> {
-    let mark = b"<AppendedData encoding=\"raw\">\n_";
-    let head = bytes.windows(mark.len()).position(|window| window == mark).ok_or("no data")?;
-    let data = bytes[head + mark.len()..].strip_suffix(TAIL).ok_or("the end is missing")?;
-    let head = std::str::from_utf8(&bytes[..head]).map_err(|e| e.to_string())?;
-    if !head.starts_with("<?xml") || !head.contains("byte_order=\"LittleEndian\"") {
-        return Err("another head than expected".into());
+fn read(path: &Path) -> Result<Vtu, String> {
+    let file = Vtk::import(path).map_err(|error| error.to_string())?;
+    let DataSet::UnstructuredGrid { pieces, .. } = file.data else {
+        return Err("no unstructured grid".into());
+    };
+    let [piece] =
+        <[_; 1]>::try_from(pieces).map_err(|pieces| format!("{} pieces", pieces.len()))?;
+    let piece = piece.into_loaded_piece_data(None).map_err(|error| error.to_string())?;
+    let points = piece.cells.types.len();
+    let mut arrays = vec![Array {
+        name: "Points".into(),
+        components: 3,
+        values: piece.points.cast_into().ok_or("positions that are no numbers")?,
+    }];
+    for attribute in &piece.data.point {
+        let Attribute::DataArray(array) = attribute else {
+            return Err("a point array of another kind".into());
+        };
+        arrays.push(Array {
+            name: array.name.clone(),
+            components: array.num_comp(),
+            values: array.data.cast_into().ok_or("an array that holds no numbers")?,
+        });
     }
-    let points = piece(head).ok_or("no number of points")?;
-    let mut arrays = Vec::new();
-    let mut used = 0;
-    for element in head.split('<').filter(|element| element.starts_with("DataArray")) {
-        if attribute(element, "format") != Some("appended") {
-            continue;
+    for Array { name, components, values } in &arrays {
+        if values.len() != points * components {
+            return Err(format!("{points} points, but {} numbers in {name}", values.len()));
         }
-        let (array, length) = read_array(element, points, data)
-            .ok_or_else(|| format!("<{element} does not fit the data"))?;
-        used += length;
-        arrays.push(array);
-    }
-    if used != data.len() {
-        return Err(format!("{used} bytes of {} belong to arrays", data.len()));
     }
     Ok(Vtu { points, arrays })
 }
 
-fn piece(head: &str) -> Option<usize> {
-    let element = head.split('<').find(|element| element.starts_with("Piece"))?;
-    attribute(element, "NumberOfPoints")?.parse().ok()
-}
-
-/// The array and the bytes that it takes with its length.
-fn read_array(element: &str, points: usize, data: &[u8]) -> Option<(Array, usize)> {
-    let kind = attribute(element, "type")?;
-    let components: usize = attribute(element, "NumberOfComponents")?.parse().ok()?;
-    let offset: usize = attribute(element, "offset")?.parse().ok()?;
-    let size = match kind {
-        "Int8" | "UInt8" => 1,
-        "Int16" | "UInt16" => 2,
-        "Int32" | "UInt32" | "Float32" => 4,
-        "Int64" | "UInt64" | "Float64" => 8,
-        _ => return None,
-    };
-    let block = data.get(offset..)?;
-    let (length, block) = block.split_first_chunk::<8>()?;
-    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
-    if length != points * components * size {
-        return None;
-    }
-    let values = block.get(..length)?.chunks_exact(size).map(|bytes| number(kind, bytes));
-    let name = attribute(element, "Name")?.into();
-    Some((Array { name, kind: kind.into(), components, values: values.collect() }, length + 8))
-}
-
-fn number(kind: &str, bytes: &[u8]) -> f64 {
-    let mut word = [0; 8];
-    word[..bytes.len()].copy_from_slice(bytes);
-    match kind {
-        "Float64" => f64::from_le_bytes(word),
-        "Float32" => f64::from(f32::from_bits(u64::from_le_bytes(word) as u32)),
-        // Ids and kinds are never negative, and far below 2^53.
-        _ => u64::from_le_bytes(word) as f64,
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::parse;
+    use super::read;
     use sph_io::{ParticleFrame, write_vtu};
 
     #[test]
@@ -131,18 +93,16 @@ mod tests {
             .with("id", vec![7_u64, 8])
             .with("pressure", vec![-1.5_f32, f32::NAN]);
         write_vtu(&path, &frame).unwrap();
-        let bytes = std::fs::read(&path).unwrap();
-        let vtu = parse(&bytes).unwrap();
+        let vtu = read(&path).unwrap();
         assert_eq!(vtu.points, 2);
         assert_eq!(vtu.array("Points").values, [1.0, 2.0, 0.0, 3.0, 4.5, 0.0]);
         assert_eq!(vtu.array("id").values, [7.0, 8.0]);
         assert_eq!(vtu.array("pressure").values[0], -1.5);
         assert!(vtu.array("pressure").values[1].is_nan());
-        for cut in [1, 20, 40, bytes.len() / 2] {
-            assert!(parse(&bytes[..bytes.len() - cut]).is_err(), "{cut}");
+        let bytes = std::fs::read(&path).unwrap();
+        for cut in [20, 60, bytes.len() / 2, bytes.len()] {
+            std::fs::write(&path, &bytes[..bytes.len() - cut]).unwrap();
+            assert!(read(&path).is_err(), "{cut} of {} bytes cut", bytes.len());
         }
-        let mut gap = bytes.clone();
-        gap.remove(bytes.len() - 40);
-        assert!(parse(&gap).is_err());
     }
 }

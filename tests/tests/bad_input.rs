@@ -168,8 +168,15 @@ fn formulas() {
     };
     refused_at(&with("[\"sinn(x)\", \"0\"]"), "sinn", &["sinn(x)", "did you mean `sin`?"]);
     refused_at(&with("[\"0\", \"2*(x\"]"), "2*(x", &["2*(x"]);
-    refused_at(&with("[\"z\", \"0\"]"), "\"z\"", &["`x`"]);
+    refused_at(&with("[\"z\", \"0\"]"), "\"z\"", &["dimension = 2", "use x and y"]);
     refused_at(&with("[\"log(x - 10)\", \"0\"]"), "log", &["log(x - 10)"]);
+}
+
+#[test]
+fn an_initial_pressure_that_no_density_has() {
+    let pressure = "pressure = \"-1e7*x\"";
+    let words = ["initial pressure", "Pa", "numerics.sound_speed"];
+    spoilt("pressure = \"hydrostatic\"", pressure, &words);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! A run that is killed at any moment leaves whole files, from which it goes on.
 
-use sph_tests::{Results, Run, Running, SHIPPED, SMALL, assert_whole, write_scene};
+use sph_tests::{Results, Run, Running, SHIPPED, SMALL, assert_whole, mpi_program, write_scene};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -23,6 +23,11 @@ fn kill_after(mut running: Running, delay: Duration) -> bool {
     !running.kill().status.success()
 }
 
+/// Goes on from the last checkpoint, or starts anew when there is none yet.
+fn go_on(run: Run, results: &Results) -> Run {
+    if results.files(".vtkhdf").is_empty() { run } else { run.resume() }
+}
+
 /// Kills `run` again and again while it goes on from its checkpoints; then lets it end.
 fn check(run: &Run, dimension: usize, kills: usize) {
     let start = Instant::now();
@@ -31,8 +36,8 @@ fn check(run: &Run, dimension: usize, kills: usize) {
     let results = Results::new();
     let mut survived = 0;
     for (kill, moment) in moments(1).take(kills).enumerate() {
-        let ranks = 1 + kill % 2;
-        let running = run.clone().ranks(ranks).resume().out(results.path()).start();
+        let again = go_on(run.clone().ranks(1 + kill % 2), &results);
+        let running = again.out(results.path()).start();
         // Short enough for several kills on the way to the end.
         if !kill_after(running, length.mul_f64(0.4 * moment)) {
             survived += 1;
@@ -40,7 +45,7 @@ fn check(run: &Run, dimension: usize, kills: usize) {
         assert_whole(&results.path(), dimension);
     }
     assert!(survived < kills, "no run was killed");
-    results.add(run.clone().resume());
+    results.add(go_on(run.clone(), &results));
     assert_whole(&results.path(), dimension);
     assert_eq!(results.digest(), undisturbed.digest());
     assert_eq!(results.series(), undisturbed.series());
@@ -74,14 +79,36 @@ fn a_dam_break_in_space() {
 #[test]
 fn at_the_start() {
     let folder = tempfile::tempdir().unwrap();
-    let run = Run::new(write_scene(folder.path(), SMALL)).threads(1).set("output.snapshots=0.01");
+    let run = Run::new(write_scene(folder.path(), SMALL)).threads(1).checkpoint_every(0.01);
     let undisturbed = Results::of(run.clone());
     for moment in moments(100).take(12) {
         let results = Results::new();
         let running = run.clone().out(results.path()).start();
         kill_after(running, Duration::from_millis(40).mul_f64(moment));
         assert_whole(&results.path(), 2);
-        results.add(run.clone().resume());
+        results.add(go_on(run.clone(), &results));
+        assert_whole(&results.path(), 2);
         assert_eq!(results.digest(), undisturbed.digest());
     }
+}
+
+/// A job that loses a rank ends, and goes on from its checkpoint.
+#[test]
+fn a_rank_of_an_mpi_job() {
+    let Some(program) = mpi_program("a killed rank of an MPI job") else { return };
+    let scene = SHIPPED[0];
+    let run = scene.run().set("output.snapshots=0.02");
+    let expected = Results::of(run.clone().threads(1)).digest();
+    let run = run.checkpoint_every(0.2 * scene.end_time);
+    let results = Results::new();
+    let job = run.clone().mpi(&program, 3).patience(Duration::from_secs(60));
+    let mut job = job.out(results.path()).start();
+    assert!(job.wait_for(|| !results.files(".vtkhdf").is_empty()), "{}", job.wait());
+    job.kill_a_rank();
+    let outcome = job.wait();
+    assert!(!outcome.status.success(), "{outcome}");
+    assert_whole(&results.path(), 2);
+    results.add(run.resume().mpi(&program, 2));
+    assert!(results.summary()["resumed_at"].as_f64().is_some_and(|time| time > 0.0));
+    assert_eq!(results.digest(), expected);
 }

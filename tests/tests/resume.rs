@@ -121,16 +121,16 @@ fn in_three_dimensions() {
 }
 
 #[test]
-fn without_a_checkpoint_it_starts_anew() {
+fn without_a_checkpoint_it_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let run = Run::new(write_scene(folder.path(), SMALL)).threads(1);
-    let expected = Results::of(run.clone()).digest();
-    let results = Results::of(run.clone().resume());
-    assert_eq!(results.digest(), expected);
-    assert!(results.summary()["resumed_at"].is_null());
-    // So it does when the folder holds results without checkpoints.
-    results.add(run.resume());
-    assert_eq!(results.digest(), expected);
+    for results in [Results::new(), Results::of(run.clone())] {
+        let before = results.contents();
+        let outcome = run.clone().resume().out(results.path()).fail(2);
+        outcome.message.assert_contains(&["no checkpoint", "--checkpoint-every", "--resume"]);
+        assert!(results.contents() == before, "the refused run changed files");
+        assert_eq!(results.path().exists(), !before.is_empty());
+    }
 }
 
 /// The results of the small scene until half its time, with checkpoints.

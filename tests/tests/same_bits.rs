@@ -1,6 +1,7 @@
 //! The same bits on any number of ranks and threads, and under MPI.
 
 use sph_tests::{Reduced, Results, Run, SHIPPED, mpi_program};
+use std::path::Path;
 
 /// Runs the scene as `how` says and asserts the digest.
 #[track_caller]
@@ -51,6 +52,27 @@ fn every_scene_under_mpirun() {
             assert_eq!(summary["ranks"], processes, "{}: {how}", scene.name);
             assert_eq!(results.digest(), expected, "{}: {how}", scene.name);
         }
+    }
+}
+
+/// Snapshots, tables and checkpoints do not tell how many ranks wrote them.
+#[test]
+fn every_file_is_the_same() {
+    for scene in [SHIPPED[0], SHIPPED[2]] {
+        let files = |run: Run| {
+            let results = Results::of(run.checkpoint_every(0.3 * scene.end_time).threads(1));
+            let mut contents = results.contents();
+            contents.retain(|(path, _)| !path.ends_with("summary.json"));
+            let name = |path: &Path| path.file_name().map(ToOwned::to_owned);
+            contents.into_iter().map(|(path, bytes)| (name(&path), bytes)).collect::<Vec<_>>()
+        };
+        let (alone, shared) = (files(scene.run().ranks(1)), files(scene.run().ranks(3)));
+        assert!(alone.len() > 10);
+        for (one, other) in alone.iter().zip(&shared) {
+            assert_eq!(one.0, other.0, "{}", scene.name);
+            assert!(one.1 == other.1, "{}: {:?} differs", scene.name, one.0);
+        }
+        assert_eq!(alone.len(), shared.len());
     }
 }
 
