@@ -31,12 +31,11 @@ enum Failure {
 }
 
 pub fn main(arguments: &CheckArguments) -> ExitCode {
-    let checked = arguments.scene.read().map_err(Failure::Scene).and_then(|scene| {
-        match scene.dimension() {
+    let checked =
+        arguments.scene.read().map_err(Failure::Scene).and_then(|scene| match scene.dimension() {
             2 => check::<2>(&scene, arguments),
             _ => check::<3>(&scene, arguments),
-        }
-    });
+        });
     let report = match checked {
         Ok(report) => report,
         Err(Failure::Scene(error)) => {

@@ -13,10 +13,13 @@ use std::borrow::Cow;
 #[serde(deny_unknown_fields)]
 pub struct Fluid {
     /// Density at pressure 0, kg/m³.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: At<f64>,
     /// Dynamic viscosity, Pa s. Absent or 0: inviscid, and the term costs nothing.
+    #[schemars(extend("minimum" = 0))]
     pub viscosity: Option<At<f64>>,
     /// Where the fluid is at the start. A point in several regions belongs to the first of them.
+    #[schemars(extend("minItems" = 1))]
     pub regions: At<Vec<At<Region>>>,
     /// Initial velocity, m/s: one formula in x, y, z per component. At rest when absent.
     pub velocity: Option<At<Vec<At<Formula>>>>,

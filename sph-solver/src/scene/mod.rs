@@ -40,5 +40,5 @@ pub use root::Scene;
 pub(crate) use root::vector;
 pub use schema::json_schema;
 pub use shape::{AxisKeys, BoxKeys, PlaneKeys, Shape, ShapeKeys, SphereKeys};
-pub(crate) use suggest::nearest;
 pub use solid::{FluidSide, Solid};
+pub(crate) use suggest::nearest;

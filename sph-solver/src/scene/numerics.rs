@@ -11,6 +11,7 @@ use std::borrow::Cow;
 #[serde(deny_unknown_fields)]
 pub struct Numerics {
     /// Initial particle distance, m.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub spacing: At<f64>,
     /// Discretisation of the flow equations.
     #[serde(default)]
@@ -20,9 +21,11 @@ pub struct Numerics {
     pub kernel: Kernel,
     /// Support radius of the kernel divided by the spacing. 3 is the value point in three dimensions
     /// (about 92 neighbours); 4 is for accuracy runs.
+    #[schemars(extend("minimum" = 2, "maximum" = 6))]
     #[serde(default = "default_support")]
     pub support: At<f64>,
     /// Courant number: the time step is cfl · h/(c0 + |v|) at most. Stable below 1.72; at most 1.7.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1.7))]
     #[serde(default = "default_cfl")]
     pub cfl: At<f64>,
     /// Precision of the pair arithmetic. Positions and time integration are always double.
@@ -34,8 +37,10 @@ pub struct Numerics {
     pub sound_speed: At<SoundSpeed>,
     /// Artificial viscosity α: the viscous term has the strength α h c0. 0 leaves the term out. When
     /// absent, 0.02 for an inviscid fluid; a fluid with a physical viscosity has no artificial one.
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
     pub artificial_viscosity: Option<At<f64>>,
     /// Density diffusion δ of the δ-SPH scheme: the term has the strength δ h c0. 0 leaves it out.
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
     #[serde(default = "default_density_diffusion")]
     pub density_diffusion: At<f64>,
     /// Pressure as a function of density.
@@ -43,6 +48,7 @@ pub struct Numerics {
     pub equation_of_state: Equation,
     /// Verlet skin divided by the support radius: neighbour lists reach this much farther, so that
     /// they last several steps. Changes cost, not results beyond rounding.
+    #[schemars(extend("minimum" = 0, "maximum" = 1))]
     #[serde(default = "default_skin")]
     pub skin: At<f64>,
     /// What to do with a particle that leaves the domain.

@@ -28,6 +28,7 @@ pub struct Scene {
     #[schemars(range(min = 2, max = 3))]
     pub dimension: At<usize>,
     /// Simulated time at which the run ends, s.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub end_time: At<f64>,
     /// Gravity, m/s², one number per dimension. None when absent.
     pub gravity: Option<At<Vec<f64>>>,

@@ -136,6 +136,7 @@ pub struct SphereKeys {
     /// Centre, m.
     pub center: At<Vec<f64>>,
     /// Radius, m.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: At<f64>,
 }
 
@@ -148,6 +149,7 @@ pub struct AxisKeys {
     /// The other end of the axis, m.
     pub to: At<Vec<f64>>,
     /// Radius, m.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius: At<f64>,
 }
 

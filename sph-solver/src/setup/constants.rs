@@ -105,9 +105,10 @@ pub fn sound_speed(
         SoundSpeed::Auto => Err(scene.error(
             numerics.sound_speed.place,
             ErrorKind::Invalid {
-                what: "a sound speed cannot be derived: the scene has no gravity and its fluid is at \
+                what:
+                    "a sound speed cannot be derived: the scene has no gravity and its fluid is at \
                        rest"
-                    .into(),
+                        .into(),
                 help: "set numerics.sound_speed in m/s, about ten times the largest flow speed"
                     .into(),
             },

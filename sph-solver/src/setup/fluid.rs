@@ -51,8 +51,7 @@ impl<const D: usize> Filling<D> {
     ) -> Result<Particles<D>, SceneError> {
         let mut particles = Particles::default();
         for (region, range) in regions(fluid, &self.ends) {
-            let At { value: pressure, place } =
-                region.pressure.as_ref().unwrap_or(&fluid.pressure);
+            let At { value: pressure, place } = region.pressure.as_ref().unwrap_or(&fluid.pressure);
             for i in range {
                 let x = self.position[i];
                 let p = match pressure {

@@ -15,8 +15,8 @@ mod shapes;
 pub use constants::{Constants, StepLimit, expected_speed, time_step};
 pub use particles::Particles;
 pub use report::{
-    BYTES_PER_PARTICLE, CheckReport, MeshSummary, ParticleCounts, SolidCount,
-    UPDATES_PER_CORE_SECOND,
+    BYTES_PER_FLUID_PARTICLE, BYTES_PER_WALL_PARTICLE, CheckReport, MeshSummary,
+    PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SolidCount,
 };
 
 use crate::eos::EquationOfState;
@@ -81,8 +81,7 @@ impl<const D: usize> Setup<D> {
         domain::check(scene, fluid, &domain, &filling)?;
         let gravity = scene.gravity();
         let initial_speed = filling.largest_speed();
-        let expected_speed =
-            expected_speed(&gravity, height(&gravity, &fluid_box), initial_speed);
+        let expected_speed = expected_speed(&gravity, height(&gravity, &fluid_box), initial_speed);
         let sound_speed = constants::sound_speed(scene, numerics, expected_speed)?;
         let density0 = *fluid.density;
         let equation_of_state = match numerics.equation_of_state {
@@ -223,9 +222,8 @@ fn fill<const D: usize>(
         let runs = lattice_inside(region, lattice)
             .map_err(|error| lattice_error(scene, keys.place, &error))?;
         let earlier = &regions[..index];
-        let taken = |x: &[f64; D]| {
-            earlier.iter().any(|earlier| earlier.signed_distance(x) + margin < 0.0)
-        };
+        let taken =
+            |x: &[f64; D]| earlier.iter().any(|earlier| earlier.signed_distance(x) + margin < 0.0);
         position.extend(runs.points().filter(|x| !taken(x)));
         ends.push(position.len());
     }
@@ -312,6 +310,9 @@ impl<const D: usize> Setup<D> {
         let (step, step_limit) = time_step(constants, self.expected_speed);
         let steps = (*scene.end_time / step).ceil();
         let particle_updates = fluid as f64 * steps;
+        let neighbours = lattice_neighbours::<D>(constants.support_radius / constants.spacing);
+        let pairs = particle_updates * neighbours as f64 * PASSES_PER_STEP;
+        let walls = total - fluid;
         let bounds = Aabb::around(&self.particles.position);
         Ok(CheckReport {
             name: scene.name().into(),
@@ -323,7 +324,7 @@ impl<const D: usize> Setup<D> {
             spacing: constants.spacing,
             smoothing_length: constants.smoothing_length,
             support_radius: constants.support_radius,
-            neighbours: lattice_neighbours::<D>(constants.support_radius / constants.spacing),
+            neighbours,
             sound_speed: constants.sound_speed,
             expected_speed: self.expected_speed,
             time_step: step,
@@ -331,8 +332,9 @@ impl<const D: usize> Setup<D> {
             end_time: *scene.end_time,
             steps: steps as u64,
             particle_updates,
-            core_seconds: particle_updates / UPDATES_PER_CORE_SECOND,
-            memory_bytes: total as f64 * BYTES_PER_PARTICLE,
+            core_seconds: pairs / PAIRS_PER_CORE_SECOND,
+            memory_bytes: fluid as f64 * BYTES_PER_FLUID_PARTICLE
+                + walls as f64 * BYTES_PER_WALL_PARTICLE,
             ranks,
             meshes: self.meshes.clone(),
         })
@@ -348,7 +350,7 @@ impl<const D: usize> Setup<D> {
             ));
         }
         let mach = self.expected_speed / self.constants.sound_speed;
-        if mach > 0.1 * (1.0 + 1e-9) {
+        if mach > 0.102 {
             warnings.push(format!(
                 "the sound speed is only {:.1} times the expected flow speed; below 10 the fluid \
                  is visibly compressible",
@@ -361,6 +363,8 @@ impl<const D: usize> Setup<D> {
 
 /// Points of a lattice of spacing 1 closer than `radius` to one of them, itself left out.
 fn lattice_neighbours<const D: usize>(radius: f64) -> usize {
+    // Support over spacing is a round number up to rounding; points at just that distance weigh 0.
+    let radius = radius * (1.0 - 1e-9);
     let reach = radius.ceil() as i64;
     let side = 2 * reach + 1;
     let count = (0..side.pow(D as u32)).filter(|cell| {

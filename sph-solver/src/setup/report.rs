@@ -4,13 +4,19 @@ use super::constants::StepLimit;
 use serde::Serialize;
 use std::fmt;
 
-/// Memory per particle, bytes: state, records, neighbour lists and skin at about 92 neighbours. A
-/// measured run reports its own number as `bytes_per_particle` in `summary.json`.
-pub const BYTES_PER_PARTICLE: f64 = 850.0;
+/// Memory per fluid particle, bytes: state, records, neighbour lists and skin at about 92 neighbours.
+/// Runs report what they used as `bytes_per_particle`, over fluid and walls, in `summary.json`.
+pub const BYTES_PER_FLUID_PARTICLE: f64 = 850.0;
 
-/// Fluid particles times steps that one core of a present machine does in a second in three
-/// dimensions with 92 neighbours, to within a factor of three. For the cost estimate only.
-pub const UPDATES_PER_CORE_SECOND: f64 = 2.0e6;
+/// Memory per wall particle, bytes. Walls are sources only and have no neighbour lists.
+pub const BYTES_PER_WALL_PARTICLE: f64 = 150.0;
+
+/// Pairs that one core of a present machine evaluates in a second in mixed precision, search, skin and
+/// walls included, to within a factor of two. For the cost estimate only.
+pub const PAIRS_PER_CORE_SECOND: f64 = 3.0e8;
+
+/// Passes over all pairs in a step: density and force.
+pub const PASSES_PER_STEP: f64 = 2.0;
 
 /// A scene in numbers: what would run, and what it would cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,7 +53,7 @@ pub struct CheckReport {
     pub steps: u64,
     /// Fluid particles times steps.
     pub particle_updates: f64,
-    /// Rough cost in core-seconds.
+    /// Rough cost in core-seconds, see [`PAIRS_PER_CORE_SECOND`].
     pub core_seconds: f64,
     /// Memory of all ranks together, bytes.
     pub memory_bytes: f64,
@@ -175,8 +181,7 @@ fn short(number: f64) -> String {
 }
 
 fn corners(corners: &[Vec<f64>; 2]) -> String {
-    let point =
-        |point: &[f64]| point.iter().map(|x| short(*x)).collect::<Vec<_>>().join(", ");
+    let point = |point: &[f64]| point.iter().map(|x| short(*x)).collect::<Vec<_>>().join(", ");
     format!("[{}] to [{}] m", point(&corners[0]), point(&corners[1]))
 }
 
