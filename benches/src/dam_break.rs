@@ -1,0 +1,176 @@
+//! The dam break that DualSPHysics ships, without its building: whole steps of the solver.
+
+use bytemuck::Pod;
+use sph_decomp::Communicator;
+use sph_kernels::{Real, WendlandC2};
+use sph_solver::eos::EquationOfState;
+use sph_solver::error::RunError;
+use sph_solver::model::{Model, OnLost};
+use sph_solver::physics::Terms;
+use sph_solver::simulation::Simulation;
+use sph_solver::state::{FLUID, State};
+use sph_solver::team::Team;
+use sph_solver::terms::{
+    ArtificialViscosity, Continuity, HydrostaticDiffusion, OneSidedRiemannWall, SymmetricPressure,
+};
+use sph_solver::timestep::StepLimits;
+
+const GRAVITY: f64 = 9.81;
+const DENSITY: f64 = 1000.0;
+/// Box with an open top, m.
+const BOX: [f64; 3] = [1.6, 0.67, 0.4];
+/// Water column in a corner of it, m.
+const COLUMN: [f64; 3] = [0.4, 0.67, 0.3];
+
+/// Terms of the dam break: fluid and walls in both passes.
+pub type BoxTerms = Terms<
+    (Continuity, HydrostaticDiffusion<3>),
+    (SymmetricPressure, ArtificialViscosity),
+    Continuity,
+    OneSidedRiemannWall<3>,
+>;
+
+/// A water column in a box: 1.6 × 0.67 × 0.4 m, column 0.4 × 0.67 × 0.3 m, walls as thick as the
+/// support radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DamBreak {
+    /// Distance of particles, m.
+    pub spacing: f64,
+    /// Support radius / spacing.
+    pub support: f64,
+    /// Skin of the lists / support radius.
+    pub skin: f64,
+    /// Start in the middle of the collapse instead of at rest: the velocities of a stagnation flow
+    /// whose front is as fast as the front of the dam break becomes, 2 √(g H). The lists then live
+    /// as briefly from the first step as they do in the run later on.
+    pub collapsing: bool,
+}
+
+impl DamBreak {
+    /// The spacing at which the column holds about this many particles.
+    pub fn spacing_for(fluid: usize) -> f64 {
+        (COLUMN.iter().product::<f64>() / fluid as f64).cbrt()
+    }
+
+    /// Constants of the run.
+    pub fn model(&self) -> Model<3> {
+        let (dp, radius) = (self.spacing, self.support * self.spacing);
+        let sound_speed = 20.0 * (GRAVITY * COLUMN[2]).sqrt();
+        let margin = (self.support.ceil() + 1.0) * dp;
+        Model {
+            spacing: dp,
+            support_radius: radius,
+            skin: self.skin * radius,
+            gravity: [0.0, 0.0, -GRAVITY],
+            equation_of_state: EquationOfState::Tait { density0: DENSITY, sound_speed, gamma: 7.0 },
+            limits: StepLimits {
+                cfl: 1.0,
+                smoothing_length: 0.5 * radius,
+                sound_speed,
+                kinematic_viscosity: 0.0,
+            },
+            domain: ([-margin; 3], [BOX[0] + margin, BOX[1] + margin, 3.0 * BOX[2]]),
+            on_lost: OnLost::Remove,
+        }
+    }
+
+    /// δ-SPH with artificial viscosity 0.1 and density diffusion 0.1.
+    pub fn physics(&self) -> BoxTerms {
+        let model = self.model();
+        let (h, c0) = (model.limits.smoothing_length, model.limits.sound_speed);
+        Terms {
+            fluid_density: (
+                Continuity,
+                HydrostaticDiffusion {
+                    strength: 0.1 * h * c0,
+                    hydrostatic_gradient: model.gravity.map(|g| g * DENSITY / (c0 * c0)),
+                },
+            ),
+            fluid_force: (
+                SymmetricPressure,
+                ArtificialViscosity { strength: 0.1 * h * c0 * DENSITY, softening: 0.01 * h * h },
+            ),
+            wall_density: Continuity,
+            wall_force: OneSidedRiemannWall { gravity: model.gravity, sound_speed: c0 },
+        }
+    }
+
+    /// All particles.
+    pub fn particles(&self) -> State<3> {
+        let dp = self.spacing;
+        let cells = |lengths: [f64; 3]| lengths.map(|l| (l / dp).round() as i32);
+        let (tank, column) = (cells(BOX), cells(COLUMN));
+        let layers = self.support.ceil() as i32;
+        let within =
+            |cell: [i32; 3], size: [i32; 3]| (0..3).all(|k| (0..size[k]).contains(&cell[k]));
+        let mut state = State::default();
+        for z in -layers..tank[2] {
+            for y in -layers..tank[1] + layers {
+                for x in -layers..tank[0] + layers {
+                    let cell = [x, y, z];
+                    if within(cell, column) {
+                        self.add(&mut state, cell, FLUID);
+                    } else if !within(cell, tank) {
+                        self.add(&mut state, cell, 1);
+                    }
+                }
+            }
+        }
+        state
+    }
+
+    fn add(&self, state: &mut State<3>, cell: [i32; 3], kind: u16) {
+        let dp = self.spacing;
+        let x = cell.map(|i| (f64::from(i) + 0.5) * dp);
+        let fluid = kind == FLUID;
+        let depth = if fluid { (COLUMN[2] - x[2]).max(0.0) } else { 0.0 };
+        let rate = if fluid && self.collapsing {
+            2.0 * (GRAVITY * COLUMN[2]).sqrt() / COLUMN[0]
+        } else {
+            0.0
+        };
+        state.id.push(state.id.len() as u64);
+        state.kind.push(kind);
+        state.mass.push(DENSITY * dp.powi(3));
+        state.density.push(self.model().equation_of_state.density(DENSITY * GRAVITY * depth));
+        state.position.push(x);
+        state.velocity.push([rate * x[0], 0.0, -rate * x[2]]);
+    }
+
+    /// The simulation on one rank.
+    pub fn simulation<'a, S: Real + Pod>(
+        &self,
+        comm: &'a dyn Communicator,
+        threads: usize,
+    ) -> Result<Simulation<'a, 3, S, WendlandC2, BoxTerms>, RunError> {
+        let team = Team::new(threads)?;
+        Simulation::new(comm, team, self.model(), self.physics(), self.particles(), None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sph_decomp::Solo;
+
+    #[test]
+    fn a_coarse_dam_breaks() {
+        let case = DamBreak { spacing: 0.05, support: 3.0, skin: 0.2, collapsing: true };
+        let mut simulation = case.simulation::<f32>(&Solo, 1).expect("a sound set-up");
+        for _ in 0..20 {
+            simulation.step(false).expect("steps");
+        }
+        let fluid = simulation.rank().fluid.owned();
+        assert_eq!(fluid, 8 * 13 * 6);
+        let front = simulation.state().position[..fluid].iter().map(|x| x[0]).fold(0.0, f64::max);
+        assert!(front > COLUMN[0], "{front}");
+    }
+
+    #[test]
+    fn the_spacing_gives_the_count() {
+        let spacing = DamBreak::spacing_for(1000);
+        let case = DamBreak { spacing, support: 3.0, skin: 0.2, collapsing: false };
+        let fluid = case.particles().kind.iter().filter(|&&kind| kind == FLUID).count();
+        assert!((900..1100).contains(&fluid), "{fluid}");
+    }
+}
