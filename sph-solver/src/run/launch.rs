@@ -88,9 +88,8 @@ impl<const D: usize> Launch<D> {
             }
             (World::Process, Some(ranks)) => {
                 let threads = self.threads.unwrap_or((cores / ranks).max(1));
-                let summaries = ThreadRanks::run(ranks, |comm| {
-                    self.rank(&comm, "threads", threads, watch)
-                });
+                let summaries =
+                    ThreadRanks::run(ranks, |comm| self.rank(&comm, "threads", threads, watch));
                 let summaries = summaries.map_err(|error| match error {
                     RanksError::Failed { error, .. } => error,
                     other => RunError::Ranks(other.to_string()),
