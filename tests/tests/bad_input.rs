@@ -1,6 +1,6 @@
 //! Every mistake of a user: exit code 2, one message with the place and a way out, nothing written.
 
-use sph_tests::{BoxMesh, Outcome, Run, SMALL, line_of, scene, write_scene};
+use sph_tests::{BoxMesh, Outcome, Run, SMALL, line_of, mpi_program, program, scene, write_scene};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -287,6 +287,20 @@ fn arguments() {
     refused(Run::new(&path).end_time(-1.0), &["--end-time", "positive"]);
     refused(Run::new(&path).arg("--checkpoint-every").arg("never"), &["--checkpoint-every"]);
     refused(Run::new(&path).arg("--end-tme=1"), &["--end-tme", "--end-time"]);
+}
+
+/// Every process would run the whole scene, and all would write the same files.
+#[test]
+fn the_program_without_mpi_under_mpirun() {
+    if mpi_program("the program without MPI under mpirun").is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let run = Run::new(write_scene(folder.path(), SMALL)).mpi(&program(), 2);
+    let outcome = run.out(folder.path().join("results")).finish();
+    assert_eq!(outcome.status.code(), Some(2), "{outcome}");
+    outcome.message.assert_contains(&["built without MPI", "--features mpi", "--ranks 2"]);
+    assert_eq!(names(folder.path()), ["scene.toml"]);
 }
 
 /// A scene that is right, with a folder that is not.
