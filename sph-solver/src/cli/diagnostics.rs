@@ -4,9 +4,6 @@ use crate::scene::{ErrorKind, SceneError};
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::io::{IsTerminal, Write, stderr};
 
-/// Widest line of a message outside of a terminal.
-const WIDTH: usize = 100;
-
 /// Shows what is wrong with a scene. Under mpirun all ranks read the same scene, so that the first
 /// one speaks for all, unless a file is at fault, which another machine may well have.
 pub fn show_scene_error(error: &SceneError) {
@@ -34,7 +31,7 @@ fn render(error: &dyn miette::Diagnostic, terminal: bool) -> String {
     } else {
         let mut theme = GraphicalTheme::none();
         theme.characters.error = "error:".into();
-        GraphicalReportHandler::new_themed(theme).with_links(false).with_width(WIDTH)
+        GraphicalReportHandler::new_themed(theme).with_links(false).with_wrap_lines(false)
     };
     let mut text = String::new();
     match handler.render_report(&mut text, error) {

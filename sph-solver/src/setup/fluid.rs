@@ -59,8 +59,8 @@ impl<const D: usize> Filling<D> {
                     Pressure::Formula(formula) => finite(scene, formula, *place, &x)?,
                 };
                 let density = state.density(p);
-                // Written so that NaN is refused too.
-                if !(density > 0.0) {
+                // Tait's equation gives NaN for a tension that is too strong.
+                if density.is_nan() || density <= 0.0 {
                     let kind = ErrorKind::Invalid {
                         what: format!(
                             "the initial pressure at {x:?} is {p} Pa, which no density belongs to"

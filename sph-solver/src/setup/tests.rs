@@ -157,6 +157,10 @@ fn nothing_to_simulate_is_refused() {
 fn sizes_beyond_reason_are_refused() {
     let message = "`numerics.spacing` must be larger, found 0.000001";
     assert_error(tank(&["numerics.spacing=1e-6"]), ("--set", 1), message, "2.0e12 particles");
+    let message = "`numerics.spacing` must be larger, found 0.00003";
+    if memory::available().is_some_and(|free| free < 1.5e11) {
+        assert_error(tank(&["numerics.spacing=3e-5"]), ("--set", 1), message, "free here");
+    }
     let endless = "fluid.water.regions=[{ plane = { point = [0, 0], normal = [0, 1] } }]";
     assert_error(tank(&[endless]), ("--set", 1), "a region of fluid has no end", "difference");
     let huge = "domain={ min = [-1, -1e12], max = [5, 5] }";

@@ -44,7 +44,13 @@ const VARIABLES: [&str; 3] = ["x", "y", "z"];
 
 const CONSTANTS: [(&str, f64); 2] = [("pi", PI), ("e", E)];
 
-const UNARY: [(&str, fn(f64) -> f64); 20] = [
+/// A function of one number, by name.
+type NamedUnary = (&'static str, fn(f64) -> f64);
+
+/// A function of two numbers, by name.
+type NamedBinary = (&'static str, fn(f64, f64) -> f64);
+
+const UNARY: [NamedUnary; 20] = [
     ("abs", f64::abs),
     ("sign", |a| if a == 0.0 { 0.0 } else { a.signum() }),
     ("sqrt", f64::sqrt),
@@ -67,8 +73,7 @@ const UNARY: [(&str, fn(f64) -> f64); 20] = [
     ("step", |a| if a < 0.0 { 0.0 } else { 1.0 }),
 ];
 
-const BINARY: [(&str, fn(f64, f64) -> f64); 3] =
-    [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2)];
+const BINARY: [NamedBinary; 3] = [("min", f64::min), ("max", f64::max), ("atan2", f64::atan2)];
 
 impl Formula {
     /// Reads a formula. Mistakes show in [`check`](Self::check).
