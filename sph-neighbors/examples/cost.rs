@@ -13,10 +13,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let lattice = jittered_lattice(edge);
     let ids: Vec<u64> = (0..lattice.len() as u64).collect();
-    println!("{} particles, reach {reach} spacings, {} threads", ids.len(), rayon_threads());
-    for cells_per_reach in
-        std::env::var("R").map_or(vec![1.0, 1.5, 2.0, 3.0], |r| vec![r.parse().unwrap()])
-    {
+    println!(
+        "{} particles, reach {reach} spacings, {} threads",
+        ids.len(),
+        rayon::current_num_threads()
+    );
+    for cells_per_reach in [1.0, 1.5, 2.0, 3.0] {
         let grid = Grid::new([0.0; 3], reach / cells_per_reach)?;
         // Particles are stored in canonical order, as a simulation does.
         let cells = CellList::build(&grid, &lattice, &ids);
@@ -25,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut cells = CellList::build(&grid, &positions, &ids);
         let mut list = NeighborList::build(&cells, &positions, |t| t as u32, reach, 8);
         let (mut sorting, mut searching) = (f64::INFINITY, f64::INFINITY);
-        for _ in 0..std::env::var("N").map_or(5, |n| n.parse().unwrap()) {
+        for _ in 0..10 {
             let start = Instant::now();
             cells.rebuild(&grid, &positions, &ids);
             sorting = sorting.min(start.elapsed().as_secs_f64());
@@ -47,14 +49,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     Ok(())
-}
-
-fn rayon_threads() -> usize {
-    std::env::var("RAYON_NUM_THREADS")
-        .ok()
-        .and_then(|n| n.parse().ok())
-        .or_else(|| std::thread::available_parallelism().ok().map(usize::from))
-        .unwrap_or(1)
 }
 
 /// Particles of spacing 1 that are off their lattice points by up to a fifth.

@@ -39,6 +39,8 @@ pub struct Level<const D: usize> {
     pub(crate) radii: Vec<f32>,
     /// The largest of them.
     pub(crate) largest_radius: f32,
+    /// The largest in each cell of the table of cells; 0 in empty cells.
+    pub(crate) largest_in_cell: Vec<f32>,
     /// Input of the level: indices, positions and ids.
     members: Vec<u32>,
     positions: Vec<[f64; D]>,
@@ -149,6 +151,7 @@ impl<const D: usize> Level<D> {
             cells: CellList::build(grid, &[], &[]),
             radii: Vec::new(),
             largest_radius: 0.0,
+            largest_in_cell: Vec::new(),
             members: Vec::new(),
             positions: Vec::new(),
             ids: Vec::new(),
@@ -176,11 +179,19 @@ impl<const D: usize> Level<D> {
         self.radii.clear();
         self.radii.extend(order.iter().map(|&i| radius_in_units(grid, radii[i as usize])));
         self.largest_radius = self.radii.iter().copied().fold(0.0, f32::max);
+        let largest = |ends: &[u32]| {
+            let radii = &self.radii[ends[0] as usize..ends[1] as usize];
+            radii.iter().copied().fold(0.0, f32::max)
+        };
+        self.largest_in_cell.clear();
+        self.largest_in_cell.extend(self.cells.starts().windows(2).map(largest));
         self.radii.extend([0.0; MARGIN]);
     }
 
     fn bytes(&self) -> usize {
         let member = 4 + size_of::<[f64; D]>() + 8;
-        self.cells.bytes() + self.radii.capacity() * 4 + self.members.capacity() * member
+        self.cells.bytes()
+            + (self.radii.capacity() + self.largest_in_cell.capacity()) * 4
+            + self.members.capacity() * member
     }
 }

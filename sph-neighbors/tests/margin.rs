@@ -4,7 +4,7 @@ mod support;
 
 use proptest::prelude::*;
 use proptest::sample::select;
-use sph_neighbors::Grid;
+use sph_neighbors::{Grid, LevelList, NeighborList, PairReach};
 use support::{Cloud, distance, lists};
 
 /// A pair at a distance of `reach (1 + excess)`, somewhere, in some direction.
@@ -55,5 +55,23 @@ proptest! {
         for (t, other) in [(0, 1), (1, 0)] {
             prop_assert_eq!(joined.neighbors(t).contains(&other), list.count(t) == 1);
         }
+    }
+
+    #[test]
+    fn no_pair_of_radii_is_lost(
+        x in prop::array::uniform3(-50.0..50.0),
+        direction in prop::array::uniform3(-1.0..1.0_f64),
+        radii in [0.2..1.5, 0.2..1.5_f64],
+        rule in select(vec![PairReach::Mean, PairReach::Max]),
+    ) {
+        prop_assume!(distance(&direction, &[0.0; 3]) > 0.01);
+        let reach = rule.of(radii[0], radii[1]);
+        let Cloud { positions, ids } = pair(reach, x, direction, -1e-13);
+        prop_assume!(distance(&positions[0], &positions[1]) < reach);
+        let grid = Grid::new([0.1; 3], 0.75).unwrap();
+        let levels = LevelList::build(&grid, &positions, &radii, &ids).unwrap();
+        let list =
+            NeighborList::build_with_radii(&levels, &positions, &radii, |t| t as u32, rule, 8);
+        prop_assert_eq!((list.count(0), list.count(1)), (1, 1));
     }
 }

@@ -120,7 +120,24 @@ impl<const D: usize> CellList<D> {
     /// cell `last` (included) along x, the other coordinates those of `first`.
     #[inline]
     pub fn row(&self, first: [i64; D], last: i64) -> Range<usize> {
+        self.table.places(self.table.row(first, last))
+    }
+
+    /// Numbers of the cells of such a row in the table of cells.
+    #[inline]
+    pub(crate) fn row_of_cells(&self, first: [i64; D], last: i64) -> Range<usize> {
         self.table.row(first, last)
+    }
+
+    /// Places of the particles in cells of the table, given their numbers.
+    #[inline]
+    pub(crate) fn places(&self, cells: Range<usize>) -> Range<usize> {
+        self.table.places(cells)
+    }
+
+    /// First place of each cell of the table, then the end.
+    pub(crate) fn starts(&self) -> &[u32] {
+        self.table.starts()
     }
 
     /// Lowest and highest occupied cell along each axis.

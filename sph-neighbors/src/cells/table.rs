@@ -96,7 +96,7 @@ impl<const D: usize> Table<D> {
         self.keys.capacity() * 8 + self.starts.capacity() * 4
     }
 
-    /// Places of the particles from cell `first` to the cell `last` along x.
+    /// Numbers of the cells of the table from cell `first` to the cell `last` along x.
     #[inline]
     pub fn row(&self, mut first: [i64; D], last: i64) -> Range<usize> {
         let Some((low, high)) = &self.bounds else {
@@ -108,19 +108,23 @@ impl<const D: usize> Table<D> {
         {
             return 0..0;
         }
-        let (from, to) = if self.dense {
+        if self.dense {
             let from = number(&first, low, high);
-            (from, from + (last - first[0]) as usize + 1)
-        } else {
-            // Both cells are in the box, whose corners have keys.
-            let Some(key) = Grid::<D>::key_of(&first) else {
-                return 0..0;
-            };
-            let end = key + (last - first[0]) as u64;
-            let from = self.keys.partition_point(|&k| k < key);
-            (from, from + self.keys[from..].partition_point(|&k| k <= end))
+            return from..from + (last - first[0]) as usize + 1;
+        }
+        // Both cells are in the box, whose corners have keys.
+        let Some(key) = Grid::<D>::key_of(&first) else {
+            return 0..0;
         };
-        self.starts[from] as usize..self.starts[to] as usize
+        let end = key + (last - first[0]) as u64;
+        let from = self.keys.partition_point(|&k| k < key);
+        from..from + self.keys[from..].partition_point(|&k| k <= end)
+    }
+
+    /// Places of the particles in cells of the table, given their numbers.
+    #[inline]
+    pub fn places(&self, cells: Range<usize>) -> Range<usize> {
+        self.starts[cells.start] as usize..self.starts[cells.end] as usize
     }
 
     /// Occupied cells in canonical order, with the places of their particles.

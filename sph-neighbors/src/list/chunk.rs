@@ -7,6 +7,9 @@ use std::mem::take;
 /// Targets per chunk.
 pub const CHUNK: usize = 256;
 
+/// Groups of so many targets save more tests by culling their candidates once than it costs.
+const CULL: usize = 12;
+
 /// Lists of up to [`CHUNK`] targets.
 #[derive(Debug, Clone, Default)]
 pub struct Chunk {
@@ -49,6 +52,10 @@ impl Chunk {
             if let Some(group) = &group {
                 search.clear::<D>();
                 plan.collect(group, search);
+                if length >= CULL {
+                    self.tests += search.candidates() as u64;
+                    plan.cull(group, search);
+                }
             }
             for (k, x) in targets.iter().enumerate().skip(next).take(length) {
                 let start = entries.len();

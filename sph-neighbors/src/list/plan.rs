@@ -4,6 +4,7 @@ use super::compress::LANES;
 use super::query::{Group, Query, margin};
 use super::search::Search;
 use crate::{CellList, Grid, LevelList};
+use std::ops::Range;
 use wide::f32x8;
 
 /// How the reach of a pair follows from the radii of both.
@@ -38,6 +39,9 @@ pub trait Plan<const D: usize>: Sync {
     /// Adds the candidates of a group.
     fn collect(&self, group: &Self::Group, search: &mut Search);
 
+    /// Drops candidates that no target of the group can reach.
+    fn cull(&self, group: &Self::Group, search: &mut Search);
+
     /// Appends the neighbours of target number `t` of the group, but for `own`.
     fn test(
         &self,
@@ -61,11 +65,17 @@ impl<const D: usize> Plan<D> for Uniform<'_, D> {
     type Group = Group<D>;
 
     fn group(&self, _: usize, targets: &[[f64; D]]) -> (usize, Option<Group<D>>) {
-        Group::first(self.cells.grid(), self.query.group_cells, self.query.drop, targets)
+        let Query { group_cells, drop, .. } = self.query;
+        Group::first(self.cells.grid(), group_cells, drop, targets, |_| true)
     }
 
     fn collect(&self, group: &Group<D>, search: &mut Search) {
-        search.collect(self.cells, group, self.query.reach, self.query.drop, None);
+        search.collect(self.cells, group, self.query.reach, self.query.drop, None, |_| None);
+    }
+
+    fn cull(&self, group: &Group<D>, search: &mut Search) {
+        let threshold = f32x8::splat(self.query.threshold);
+        search.cull(group, self.query.drop, |_, _| threshold);
     }
 
     fn test(
@@ -97,9 +107,6 @@ pub fn radius_in_units<const D: usize>(grid: &Grid<D>, radius: f64) -> f32 {
     (radius * grid.units_per_length() + margin::<D>() + 2.0) as f32
 }
 
-/// Targets of a group are in this many cells of their level along x: of about a radius together.
-const GROUP_CELLS: i64 = 2;
-
 impl<'a, const D: usize> Variable<'a, D> {
     /// # Panics
     ///
@@ -125,9 +132,13 @@ impl<const D: usize> Plan<D> for Variable<'_, D> {
     fn group(&self, first: usize, targets: &[[f64; D]]) -> (usize, Option<Self::Group>) {
         let grid = self.levels.grid();
         let radii = &self.radii[first..first + targets.len()];
-        let level = grid.level(radii[0]);
-        let same = radii.iter().take_while(|&&radius| grid.level(radius) == level).count();
-        let (length, group) = Group::first(&grid.finer(level), GROUP_CELLS, 0, &targets[..same]);
+        let grid_of_level = grid.finer(grid.level(radii[0]));
+        // Radii of the level, or nearly so: their targets share candidates.
+        let range = grid_of_level.cell_size()..=2.0 * grid_of_level.cell_size();
+        let fits = |k: usize| range.contains(&radii[k]);
+        // Of about a radius together.
+        let width = if radii[0] < 1.5 * grid_of_level.cell_size() { 1 } else { 2 };
+        let (length, group) = Group::first(&grid_of_level, width, 0, targets, fits);
         let radius = radii[..length].iter().copied().fold(0.0, f64::max);
         let radius = radius_in_units(grid, radius);
         (length, group.map(|group| GroupWithRadius { group, radius }))
@@ -135,8 +146,21 @@ impl<const D: usize> Plan<D> for Variable<'_, D> {
 
     fn collect(&self, group: &Self::Group, search: &mut Search) {
         for level in self.levels.levels() {
-            let reach = self.rule.of(f64::from(group.radius), f64::from(level.largest_radius));
-            search.collect(&level.cells, &group.group, reach, 0, Some(&level.radii));
+            let reach = |radius: f32| self.rule.of(f64::from(group.radius), f64::from(radius));
+            let closer = |cells: Range<usize>| {
+                let cells = level.largest_in_cell[cells].iter();
+                // Unlike f32::max this is one instruction.
+                Some(reach(cells.fold(0.0, |max, &r| if r > max { r } else { max })))
+            };
+            let largest = reach(level.largest_radius);
+            search.collect(&level.cells, &group.group, largest, 0, Some(&level.radii), closer);
+        }
+    }
+
+    fn cull(&self, group: &Self::Group, search: &mut Search) {
+        match self.rule {
+            PairReach::Mean => search.cull(&group.group, 0, mean(group.radius)),
+            PairReach::Max => search.cull(&group.group, 0, max(group.radius)),
         }
     }
 
@@ -151,22 +175,28 @@ impl<const D: usize> Plan<D> for Variable<'_, D> {
     ) {
         let grid = self.levels.grid();
         let (target, group) = (grid.fixed(target), &group.group);
-        let mine = f32x8::splat(radius_in_units(grid, self.radii[t]));
+        let mine = radius_in_units(grid, self.radii[t]);
         match self.rule {
-            PairReach::Mean => {
-                let mean = |radii: &[[f32; LANES]], block: usize| {
-                    let reach = (mine + f32x8::from(radii[block])) * f32x8::HALF;
-                    reach * reach
-                };
-                search.test(group, &target, 0, mean, own, found);
-            }
-            PairReach::Max => {
-                let max = |radii: &[[f32; LANES]], block: usize| {
-                    let reach = mine.fast_max(f32x8::from(radii[block]));
-                    reach * reach
-                };
-                search.test(group, &target, 0, max, own, found);
-            }
+            PairReach::Mean => search.test(group, &target, 0, mean(mine), own, found),
+            PairReach::Max => search.test(group, &target, 0, max(mine), own, found),
         }
+    }
+}
+
+/// Squares of the mean of a radius and those of a block of candidates.
+fn mean(mine: f32) -> impl Fn(&[[f32; LANES]], usize) -> f32x8 {
+    let mine = f32x8::splat(mine);
+    move |radii, block| {
+        let reach = (mine + f32x8::from(radii[block])) * f32x8::HALF;
+        reach * reach
+    }
+}
+
+/// Squares of the larger of a radius and those of a block of candidates.
+fn max(mine: f32) -> impl Fn(&[[f32; LANES]], usize) -> f32x8 {
+    let mine = f32x8::splat(mine);
+    move |radii, block| {
+        let reach = mine.fast_max(f32x8::from(radii[block]));
+        reach * reach
     }
 }

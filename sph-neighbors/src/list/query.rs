@@ -61,7 +61,8 @@ pub struct Group<const D: usize> {
 
 impl<const D: usize> Group<D> {
     /// The group that starts `targets`, with its length; none for a target that the grid cannot
-    /// place. Targets of a group are consecutive and in up to `width` cells of one row.
+    /// place. Targets of a group are consecutive, in up to `width` cells of one row, and such that
+    /// `fits` their number in `targets`.
     ///
     /// Coordinates are relative to whole units of a test that drops `drop` bits, so that the bits
     /// that are dropped do not depend on the group.
@@ -70,6 +71,7 @@ impl<const D: usize> Group<D> {
         width: i64,
         drop: u32,
         targets: &[[f64; D]],
+        fits: impl Fn(usize) -> bool,
     ) -> (usize, Option<Self>) {
         let Some(mut low) = targets.first().and_then(|x| grid.place(x)) else {
             return (1, None);
@@ -82,7 +84,8 @@ impl<const D: usize> Group<D> {
                 break;
             };
             let other = grid.cell_at(&fixed);
-            if (other[0] - cell[0]).abs() >= width || other[1..] != cell[1..] {
+            let near = (other[0] - cell[0]).abs() < width && other[1..] == cell[1..];
+            if !near || !fits(length) {
                 break;
             }
             low = from_fn(|axis| low[axis].min(fixed[axis]));
@@ -127,10 +130,13 @@ impl<const D: usize> Group<D> {
 
     /// Calls `visit` with the places of the particles in each row of cells that may be within reach
     /// of the group, in canonical order.
+    ///
+    /// `closer` may shorten the reach for a part of a row, given the numbers of its cells.
     pub fn for_each_row(
         &self,
         cells: &CellList<D>,
         reach: f64,
+        closer: impl Fn(Range<usize>) -> Option<f64>,
         mut visit: impl FnMut(Range<usize>),
     ) {
         let Some((first, last)) = cells.bounds() else {
@@ -154,14 +160,27 @@ impl<const D: usize> Group<D> {
                 let gap = (low[axis] - far).max(near - high[axis]).max(0) as f64;
                 across += gap * gap;
             }
-            let along = reach * reach - across;
-            if along >= 0.0 {
+            let mut part = |reach: f64| {
+                let along = reach * reach - across;
+                if along < 0.0 {
+                    return 0..0;
+                }
                 let along = along.sqrt() as i64 + 1;
                 row[0] = (low[0] - along) >> bits;
-                let range = cells.row(row, (high[0] + along) >> bits);
-                if !range.is_empty() {
-                    visit(range);
+                cells.row_of_cells(row, (high[0] + along) >> bits)
+            };
+            let (mut reach, mut cells_in_reach) = (reach, part(reach));
+            // A shorter part may allow a still shorter reach.
+            for _ in 0..2 {
+                match closer(cells_in_reach.clone()) {
+                    Some(closer) if closer < 0.95 * reach => reach = closer,
+                    _ => break,
                 }
+                cells_in_reach = part(reach);
+            }
+            let places = cells.places(cells_in_reach);
+            if !places.is_empty() {
+                visit(places);
             }
             let Some(axis) = (1..D).find(|&axis| row[axis] < to[axis]) else {
                 return;

@@ -4,6 +4,7 @@ use super::compress::{LANES, compress, less};
 use super::query::Group;
 use crate::CellList;
 use std::array::from_fn;
+use std::ops::Range;
 use wide::{f32x8, i32x8};
 
 /// Blocks of candidates that are tested before their hits are read: their numbers fit 16 bits.
@@ -42,6 +43,7 @@ impl Search {
     ///
     /// * `drop`: bits of the coordinates that the test does without.
     /// * `radii`: those of the sources in canonical order, and a margin; none if the test needs none.
+    /// * `closer`: may shorten the reach for a part of a row, given the numbers of its cells.
     pub fn collect<const D: usize>(
         &mut self,
         cells: &CellList<D>,
@@ -49,9 +51,10 @@ impl Search {
         reach: f64,
         drop: u32,
         radii: Option<&[f32]>,
+        closer: impl Fn(Range<usize>) -> Option<f64>,
     ) {
         group.for_each_image(cells, reach, |image| {
-            image.for_each_row(cells, reach, |range| {
+            image.for_each_row(cells, reach, &closer, |range| {
                 let (old, new) = (self.length, range.len());
                 self.make_room(old + new);
                 for (axis, column) in self.coordinates.iter_mut().enumerate() {
@@ -70,7 +73,55 @@ impl Search {
                 self.length += new;
             });
         });
-        // Nobody hits the candidates that fill up the last block.
+        self.close();
+    }
+
+    /// Drops the candidates that are not within reach of the box of a group, given the threshold of
+    /// the target with the largest reach, as for [`test`](Self::test).
+    ///
+    /// A candidate is as near to the box as to any target in it, also after rounding.
+    pub fn cull<const D: usize>(
+        &mut self,
+        group: &Group<D>,
+        drop: u32,
+        threshold: impl Fn(&[[f32; LANES]], usize) -> f32x8,
+    ) {
+        let edge = |q: &[i64; D]| -> [f32x8; D] {
+            from_fn(|axis| f32x8::splat(((q[axis] - group.base[axis]) >> drop) as f32))
+        };
+        let (low, high) = (edge(&group.low), edge(&group.high));
+        let blocks = self.length.div_ceil(LANES);
+        let mut kept = 0;
+        for first in (0..blocks).step_by(WINDOW) {
+            let last = blocks.min(first + WINDOW);
+            let mut n = 0;
+            for block in first..last {
+                let mut distance2 = f32x8::ZERO;
+                for (axis, column) in self.coordinates.iter().enumerate() {
+                    let x = f32x8::from(column.as_chunks().0[block]);
+                    let d = (low[axis] - x).fast_max(x - high[axis]).fast_max(f32x8::ZERO);
+                    distance2 += d * d;
+                }
+                let Some(room) = self.hits[n..].first_chunk_mut() else {
+                    break;
+                };
+                let pattern = less(distance2, threshold(self.radii.as_chunks().0, block));
+                n += compress(pattern, ((block - first) * LANES) as u16, room);
+            }
+            let (from, hits) = (first * LANES, &self.hits[..n]);
+            for column in &mut self.coordinates {
+                keep(column, from, hits, kept);
+            }
+            keep(&mut self.radii, from, hits, kept);
+            keep(&mut self.index, from, hits, kept);
+            kept += n;
+        }
+        self.length = kept;
+        self.close();
+    }
+
+    /// Makes sure that nobody hits the candidates that fill up the last block.
+    fn close(&mut self) {
         for column in &mut self.coordinates {
             column[self.length..][..LANES].fill(f32::INFINITY);
         }
@@ -152,5 +203,14 @@ fn copy_lanes<S: Copy, T>(
     let room = &mut room.as_chunks_mut::<LANES>().0[..blocks];
     for (source, room) in source.iter().zip(room) {
         *room = map(*source);
+    }
+}
+
+/// Moves the elements `from + hit` of each hit to `to` and on; they come from the same place or
+/// further on.
+#[inline]
+fn keep<T: Copy>(column: &mut [T], from: usize, hits: &[u16], to: usize) {
+    for (to, &hit) in (to..).zip(hits) {
+        column[to] = column[from + usize::from(hit)];
     }
 }
