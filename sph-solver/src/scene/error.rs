@@ -188,7 +188,11 @@ impl ErrorKind {
             Self::Unreadable { .. } => {
                 "give the path of a scene file, for example scenes/dam-break-2d.toml".into()
             }
-            Self::Syntax { .. } | Self::NotFinite => return None,
+            Self::Syntax { .. } => {
+                "texts need quotes, elements of arrays commas between them; see https://toml.io"
+                    .into()
+            }
+            Self::NotFinite => "write a number such as 0.02 or 1e-3".into(),
             Self::OverrideForm => "for example: --set numerics.spacing=0.01".into(),
             Self::OverrideIndex { length: 0, .. } => "the array is empty".into(),
             Self::OverrideIndex { length, .. } => {
@@ -197,14 +201,18 @@ impl ErrorKind {
             Self::OverridePath { .. } => "set the whole value instead".into(),
             Self::UnknownKey { key, valid, .. } => suggest::help(key, valid, "keys here"),
             Self::UnknownChoice { found, valid, .. } => suggest::help(found, valid, "choices"),
-            Self::WrongType { found, expected, .. } if found.starts_with("the string") => {
-                if expected.contains("number") {
-                    "write the number without quotes".into()
-                } else {
-                    return None;
+            Self::WrongType { found, expected, .. } => {
+                let text = found.starts_with("the string");
+                match expected.as_str() {
+                    number if number.contains("number") && text => "write it without quotes",
+                    number if number.contains("whole") => "for example 2",
+                    number if number.contains("a number") => "for example 0.5 or 1e-3",
+                    "an array" => "put it in brackets, with commas between the elements: [1, 2]",
+                    "a table" => "put it in braces: { key = value }",
+                    _ => "put a text in quotes",
                 }
+                .into()
             }
-            Self::WrongType { .. } => return None,
             Self::MissingKey { key, table } => format!("add `{key}` to {table}"),
             Self::Components { dimension, .. } => {
                 format!("give {dimension} numbers, or change `dimension`")
