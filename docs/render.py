@@ -75,12 +75,11 @@ def main():
         speed = (velocity ** 2).sum(axis=1) ** 0.5
         flat = bool((points[:, 2] == points[0, 2]).all())
         up = 1 if flat else 2
-        size = points.max(axis=0) - points.min(axis=0)
-        spacing = float((size[0] * size[1] * (1 if flat else size[2]) / len(points)) ** (1 / (2 if flat else 3)))
         first = read(os.path.join(folder, moving[0][1]))
         start = vtk_to_numpy(first.GetPoints().GetData())
         extent = start.max(axis=0) - start.min(axis=0)
-        spacing = float((extent[0] * extent[1] * (1 if flat else extent[2]) / len(start)) ** (1 / (2 if flat else 3)))
+        space = extent[0] * extent[1] * (1 if flat else extent[2])
+        spacing = float((space / len(start)) ** (1 / (2 if flat else 3)))
         height = float(extent[up])
 
         renderer = vtk.vtkRenderer()
