@@ -94,20 +94,29 @@ pub struct Exchange<'a, M: Pod> {
     pub maxima: &'a mut [f64],
 }
 
+/// The two copies of the records of all three parts.
+#[derive(Debug)]
+pub struct Copies<'a, S> {
+    /// Read by the pass.
+    pub old: &'a mut [Record<S>],
+    /// Written by the pass.
+    pub new: &'a mut [Record<S>],
+}
+
 /// Runs one pass over the fluid particles of a rank, ordered `[local | inner | outer]`.
 ///
-/// `old` and `new` hold records of all three parts, `columns` and `rates` belong to the owned ones.
+/// `columns` and `rates` belong to the owned particles.
 pub fn lio_pass<const D: usize, S: Real, P: Pass<D, S>>(
     pass: &P,
     team: &Team,
     parts: &Parts,
     exchange: Exchange<'_, P::Message>,
-    old: &mut [Record<S>],
+    records: Copies<'_, S>,
     columns: FluidColumns<'_, D>,
     rates: &mut [P::Rate],
-    new: &mut [Record<S>],
 ) -> Result<(Extremes, Exposed), CommError> {
     let Exchange { comm, halo, plan, maxima } = exchange;
+    let Copies { old, new } = records;
     let (new, new_outer) = new.split_at_mut(parts.owned());
     let (mut local, mut inner) = columns.block(rates, new).split_at(parts.local);
     let (mut of_inner, mut of_local) = (Extremes::NONE, Extremes::NONE);

@@ -1,7 +1,7 @@
 //! A simulation: the particles of one rank and the loop over the steps.
 
 use crate::error::RunError;
-use crate::lio::{Exchange, Extremes, lio_pass};
+use crate::lio::{Copies, Exchange, Extremes, lio_pass};
 use crate::model::{Model, OnLost};
 use crate::passes::{DensityPass, ForcePass, kicked};
 use crate::physics::Physics;
@@ -278,10 +278,9 @@ where
             &self.team,
             &view.parts,
             exchange,
-            view.deviation,
+            Copies { old: view.deviation, new: view.pressure },
             view.columns,
             view.density_rate,
-            view.pressure,
         )?;
         self.exposed += exposed;
         self.pending = Extremes { fault: own.fault, ..Extremes::NONE };
@@ -307,10 +306,9 @@ where
             &self.team,
             &view.parts,
             exchange,
-            view.pressure,
+            Copies { old: view.pressure, new: view.deviation },
             view.columns,
             view.acceleration,
-            view.deviation,
         )?;
         self.exposed += exposed;
         self.pending = self.pending.max(own);
@@ -325,8 +323,7 @@ where
         self.skin.moved(self.clock.dt, speed);
         let dt = self.model.limits.step(extremes);
         let calm = self.model.limits.step(Extremes::NONE);
-        // Written so that NaN is refused too.
-        if !(dt > SMALLEST_STEP * calm) {
+        if dt.is_nan() || dt <= SMALLEST_STEP * calm {
             return Err(RunError::StepCollapsed {
                 step: self.clock.step,
                 time: self.clock.time,

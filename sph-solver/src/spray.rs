@@ -3,7 +3,7 @@
 //! While a particle tears off, its departing neighbours leave it with a density below ρ0. Nothing
 //! holds a drop under tension, yet without neighbours nothing restores its density either, and the
 //! missing part would later let it run deep into a wall or a pool before any pressure arises. A
-//! particle is taken for spray when fluid fills less than [`FILLED`] of the space around it that is
+//! particle is taken for spray when fluid fills less than three tenths of the space around it that is
 //! not wall; its density is then kept at ρ0 or above. Marrone, Colagrossi, Le Touzé & Graziani
 //! (2010), J. Comput. Phys. 229, tell such particles by an eigenvalue; counting neighbours at each
 //! rebuild costs no pair loop.

@@ -40,8 +40,10 @@ fn simulate(scene: &str, spacing: f64, out: &Path) -> Outcome<(PathBuf, Summary)
 /// The front of the collapsing column against Koshizuka & Oka (1996).
 fn dam_break_front(out: &Path) -> Outcome<()> {
     // The tank of the scene ends at 4 m: later points are beyond it.
-    let measured: Vec<(f64, f64)> =
-        reference("dam_break_front_koshizuka_oka.csv")?.into_iter().filter(|p| p.1 < 3.95).collect();
+    let measured: Vec<(f64, f64)> = reference("dam_break_front_koshizuka_oka.csv")?
+        .into_iter()
+        .filter(|p| p.1 < 3.95)
+        .collect();
     let travelled = measured.last().ok_or("no measured front")?.1 - 1.0;
     println!("| dam break, 2-D: H/dp | rms of front / distance travelled | worst | core-seconds |");
     println!("|---|---|---|---|");
@@ -51,7 +53,8 @@ fn dam_break_front(out: &Path) -> Outcome<()> {
         let time = table.column("time").ok_or("no time")?;
         let front = table.column("x").ok_or("no front")?;
         // The water ends half a spacing beyond its last particle.
-        let errors = measured.iter().map(|&(t, x)| interpolate(&time, &front, t) + 0.5 * spacing - x);
+        let errors =
+            measured.iter().map(|&(t, x)| interpolate(&time, &front, t) + 0.5 * spacing - x);
         let errors: Vec<f64> = errors.collect();
         let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
         let worst = errors.iter().fold(0.0_f64, |worst, e| worst.max(e.abs()));

@@ -84,7 +84,7 @@ where
     };
     let resumed_at = clock.map(|clock| clock.time);
     // Outputs of steps that the checkpoint has not seen yet are written again.
-    let written_until = resumed_at.map(|time| time.next_down());
+    let written_until = resumed_at.map(f64::next_down);
     if comm.rank() == 0 && resumed_at.is_none() {
         // A later --resume must not find checkpoints of an earlier run.
         std::fs::create_dir_all(&plan.out)
