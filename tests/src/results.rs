@@ -1,6 +1,7 @@
 //! The folder that a run leaves.
 
-use crate::run::{Outcome, Run};
+use crate::run::Run;
+use crate::running::Outcome;
 use crate::series::{Entry, read_series};
 use crate::table::{Table, read_table};
 use crate::whole::files;

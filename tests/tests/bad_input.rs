@@ -184,13 +184,13 @@ fn not_toml() {
     let folder = tempfile::tempdir().unwrap();
     let path = write_scene(folder.path(), &SMALL.replacen("= 0.02", "= = 0.02", 1));
     let place = format!("scene.toml:{}:", line_of(SMALL, "spacing"));
-    refused(folder.path(), &path, |run| run, &["not valid TOML", &place]);
+    refused(folder.path(), &path, |run| run, &["not valid TOML", &place, "help:"]);
     let path = write_scene(folder.path(), "solid tank\nfacet normal 0 0 0\n");
-    refused(folder.path(), &path, |run| run, &["not valid TOML", "scene.toml:1:"]);
+    refused(folder.path(), &path, |run| run, &["not valid TOML", "scene.toml:1:", "help:"]);
     fs::write(&path, [0x89, b'P', b'N', b'G', 0, 0xff]).unwrap();
     refused(folder.path(), &path, |run| run, &["scene.toml", "UTF-8", "help:"]);
     fs::write(&path, "").unwrap();
-    refused(folder.path(), &path, |run| run, &["scene.toml:1:", "lacks"]);
+    refused(folder.path(), &path, |run| run, &["scene.toml:1:", "lacks", "help:"]);
 }
 
 #[test]
