@@ -8,8 +8,8 @@ use std::sync::OnceLock;
 const SCENE: Reduced = SHIPPED[0];
 /// Where the stopped run stops.
 const STOP: f64 = 0.55 * SCENE.end_time;
-/// Interval of the checkpoints.
-const EVERY: f64 = 0.2 * SCENE.end_time;
+/// Interval of the checkpoints: between the times of the other outputs.
+const EVERY: f64 = 0.19 * SCENE.end_time;
 
 fn with_checkpoints(run: Run) -> Run {
     run.checkpoint_every(EVERY).threads(1)
