@@ -86,20 +86,15 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         Ok(())
     }
 
-    /// Cost of each owned particle, in pairs: measured list lengths once there are lists.
+    /// Cost of each owned particle, in pairs: measured list lengths once there are lists. Particles
+    /// that were just taken out shift the rest, which blurs the estimate a little.
     fn costs(&self) -> Vec<f64> {
-        (0..self.state.len())
-            .map(|i| {
-                if self.state.kind[i] != FLUID {
-                    WALL_COST
-                } else if i < self.near_fluid.len() && self.near_fluid.len() == self.fluid.owned() {
-                    let pairs = self.near_fluid.count(i) + self.near_walls.count(i);
-                    FLUID_COST + pairs as f64
-                } else {
-                    FLUID_COST
-                }
-            })
-            .collect()
+        let pairs = |list: &NeighborList, i| if i < list.len() { list.count(i) } else { 0 };
+        let cost = |i: usize| match self.state.kind[i] {
+            FLUID => FLUID_COST + (pairs(&self.near_fluid, i) + pairs(&self.near_walls, i)) as f64,
+            _ => WALL_COST,
+        };
+        (0..self.state.len()).map(cost).collect()
     }
 
     /// Order of the owned particles: class, then local before inner, then cell, then id.
@@ -157,12 +152,12 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         let (ids, positions) = gather(0..owned, 0..others);
         let cells = CellList::build(grid, &positions, &ids);
         let itself = |t: usize| t as u32;
-        self.near_fluid = NeighborList::build(&cells, targets, itself, reach, PAD);
+        self.near_fluid.rebuild(&cells, targets, itself, reach, PAD);
         if has_walls {
             let (ids, positions) = gather(owned..self.state.len(), others..outer.len());
             let cells = CellList::build(grid, &positions, &ids);
             let nobody = positions.len() as u32;
-            self.near_walls = NeighborList::build(&cells, targets, |_| nobody, reach, PAD);
+            self.near_walls.rebuild(&cells, targets, |_| nobody, reach, PAD);
         }
     }
 }

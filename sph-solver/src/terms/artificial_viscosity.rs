@@ -1,4 +1,4 @@
-use super::{Pair, PairTerm, Pressure, Source, Sum, Target, dot, lanes};
+use super::{Pair, PairTerm, Pressure, Source, Sum, Target, push_viscous};
 use sph_kernels::Lanes;
 
 /// Artificial viscosity of the inviscid scheme:
@@ -23,10 +23,7 @@ impl<const D: usize> PairTerm<D, Pressure> for ArtificialViscosity {
         pair: &Pair<D, L>,
         sum: &mut Sum<D, L>,
     ) {
-        // (v_j − v_i)·r_ji = (v_i − v_j)·r_ij.
-        let rate = dot(&j.approach, &pair.offset).div(pair.distance2 + lanes(self.softening));
-        let factor = rate * pair.slope_volume * lanes(self.strength);
-        sum.push(factor * i.inverse_density, pair);
+        push_viscous(self.strength, self.softening, i, j, pair, sum);
     }
 }
 

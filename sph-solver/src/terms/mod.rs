@@ -168,6 +168,23 @@ impl<const D: usize, Q: Quantity, A: PairTerm<D, Q>, B: PairTerm<D, Q>> PairTerm
     }
 }
 
+/// Adds `strength/ρ_i · π_ij ∇W_ij V_j` with `π_ij = (v_j − v_i)·r_ji / (|r_ij|² + softening)`: the
+/// form that artificial and physical viscosity share.
+#[inline(always)]
+pub(crate) fn push_viscous<const D: usize, L: Lanes>(
+    strength: f64,
+    softening: f64,
+    i: &Target<D, L>,
+    j: &Source<D, L>,
+    pair: &Pair<D, L>,
+    sum: &mut Sum<D, L>,
+) {
+    // (v_j − v_i)·r_ji = (v_i − v_j)·r_ij.
+    let rate = dot(&j.approach, &pair.offset).div(pair.distance2 + lanes(softening));
+    let factor = rate * pair.slope_volume * lanes(strength);
+    sum.push(factor * i.inverse_density, pair);
+}
+
 /// A constant of a term in every lane.
 #[inline(always)]
 pub(crate) fn lanes<L: Lanes>(value: f64) -> L {

@@ -1,4 +1,4 @@
-use super::{Pair, PairTerm, Pressure, Source, Sum, Target, dot, lanes};
+use super::{Pair, PairTerm, Pressure, Source, Sum, Target, push_viscous};
 use sph_kernels::Lanes;
 
 /// Physical viscosity: dv_i/dt += (K μ/ρ_i) Σ_j π_ij ∇W_ij V_j, K = 2 (d + 2),
@@ -25,9 +25,7 @@ impl<const D: usize> PairTerm<D, Pressure> for LaminarViscosity {
         sum: &mut Sum<D, L>,
     ) {
         let strength = 2.0 * (D as f64 + 2.0) * self.dynamic_viscosity;
-        let rate = dot(&j.approach, &pair.offset).div(pair.distance2 + lanes(self.softening));
-        let factor = rate * pair.slope_volume * lanes(strength);
-        sum.push(factor * i.inverse_density, pair);
+        push_viscous(strength, self.softening, i, j, pair, sum);
     }
 }
 

@@ -1,0 +1,78 @@
+//! Free fluid without walls: momentum is conserved, on several ranks that share it out anew.
+
+mod common;
+
+use common::{Case, digest};
+use sph_decomp::{Communicator, ThreadRanks};
+use sph_kernels::WendlandC2;
+use sph_solver::error::RunError;
+use sph_solver::physics::Terms;
+use sph_solver::run::checkpoints::share;
+use sph_solver::run::digest::Digest;
+use sph_solver::run::samples::budget;
+use sph_solver::simulation::Simulation;
+use sph_solver::state::FLUID;
+use sph_solver::team::Team;
+use sph_solver::terms::{ArtificialViscosity, Continuity, SymmetricPressure};
+
+const DROP: Case<2> = Case { column: [20, 20], tank: [20, 20], spacing: 0.05, skin: 0.1 };
+
+/// Digest and momentum per |momentum| after a while: a drop that is squeezed and flies.
+fn fly(ranks: usize) -> (Digest, f64) {
+    let results = ThreadRanks::run(ranks, |comm| {
+        let mut model = DROP.model();
+        model.gravity = [0.0; 2];
+        model.domain = ([-10.0; 2], [10.0; 2]);
+        let mut state = DROP.particles();
+        let fluid: Vec<u32> =
+            (0..state.len() as u32).filter(|&i| state.kind[i as usize] == FLUID).collect();
+        state.keep(&fluid);
+        for (v, x) in state.velocity.iter_mut().zip(&state.position) {
+            *v = [3.0 - 2.0 * x[0], 1.0 + 2.0 * x[1]];
+        }
+        let mine = share(&comm, state.len());
+        state.keep(&(mine.start as u32..mine.end as u32).collect::<Vec<_>>());
+        let h = model.limits.smoothing_length;
+        let friction = ArtificialViscosity {
+            strength: 0.02 * h * model.limits.sound_speed * 1000.0,
+            softening: 0.01 * h * h,
+        };
+        let physics = Terms {
+            fluid_density: Continuity,
+            fluid_force: (SymmetricPressure, friction),
+            wall_density: (),
+            wall_force: (),
+        };
+        let mut simulation = Simulation::<2, f64, WendlandC2, _>::new(
+            &comm as &dyn Communicator,
+            Team::new(1)?,
+            model,
+            physics,
+            state,
+            None,
+        )?;
+        let first = simulation.step(true)?.expect("a report was asked for");
+        let before = budget(&comm, simulation.model(), &first)?;
+        // Long enough for several partitions of space.
+        for _ in 0..400 {
+            simulation.step(false)?;
+        }
+        assert!(simulation.counters().rebuilds > 41, "{:?}", simulation.counters());
+        let last = simulation.step(true)?.expect("a report was asked for");
+        let after = budget(&comm, simulation.model(), &last)?;
+        let drift = (0..2).map(|k| (after.momentum[k] - before.momentum[k]).abs()).sum::<f64>();
+        Ok::<_, RunError>((digest(&last), drift / before.momentum[0].hypot(before.momentum[1])))
+    })
+    .expect("the run succeeds");
+    let merged = results.iter().fold(Digest::default(), |all, one| all.merge(one.0));
+    (merged, results[0].1)
+}
+
+#[test]
+fn momentum_is_conserved_on_any_ranks() {
+    let (alone, drift) = fly(1);
+    assert!(drift < 1e-11, "{drift:e}");
+    for ranks in [2, 3] {
+        assert_eq!(fly(ranks).0, alone, "{ranks} ranks");
+    }
+}
