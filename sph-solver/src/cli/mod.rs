@@ -70,7 +70,18 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A number of ranks or threads.
+/// More threads than this in one process are a typing error, and would bring the machine down.
+const MOST_THREADS: usize = 1024;
+
+/// A number of threads.
+fn threads(text: &str) -> Result<usize, String> {
+    match count(text)? {
+        count if count <= MOST_THREADS => Ok(count),
+        count => Err(format!("{count} is more than the {MOST_THREADS} that one process may start")),
+    }
+}
+
+/// A number of ranks.
 fn count(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(count) if count > 0 => Ok(count),
@@ -107,6 +118,7 @@ mod tests {
     fn bad_numbers_are_refused() {
         for line in [
             "sph run a.toml --ranks 0",
+            "sph run a.toml --threads 100000",
             "sph run a.toml --end-time -1",
             "sph run a.toml --end-time nan",
             "sph check a.toml --ranks many",

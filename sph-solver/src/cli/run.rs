@@ -1,7 +1,7 @@
 //! `sph run`: simulates a scene.
 
 use super::progress::Progress;
-use super::{BAD_INPUT, FAILED, SceneArguments, count, diagnostics, seconds};
+use super::{BAD_INPUT, FAILED, SceneArguments, count, diagnostics, seconds, threads};
 use crate::error::RunError;
 use crate::run::{RunOptions, Summary, World, run};
 use crate::scene::{ErrorKind, SceneError, Sources};
@@ -24,7 +24,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "N", value_parser = count)]
     ranks: Option<usize>,
     /// Threads per rank [default: all cores divided by the ranks]
-    #[arg(long, value_name = "N", value_parser = count)]
+    #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
     /// Simulated time between checkpoints, s, instead of the scene's
     #[arg(long, value_name = "T", value_parser = seconds, allow_negative_numbers = true)]
