@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""Renders snapshots of a run side by side: python3 docs/render.py OUT/NAME.pvd picture.png T1 [T2 ...]
+"""Renders snapshots of a dam break side by side.
+
+Usage: python3 docs/render.py OUT/NAME.pvd picture.png T1 [T2 ...]
 
 Needs vtk (pip install vtk). Fluid is coloured by speed; solids other than the first (the tank) are
-drawn grey; the box is that of the tank's fluid side.
+drawn grey; the box is that of the tank's fluid side. Colours, view and wall thickness suit the
+scenes of this project.
 """
 
 import os
@@ -57,6 +60,8 @@ def spheres(points, radius, colour=None, values=None, top=1.0):
 
 
 def main():
+    if len(sys.argv) < 4:
+        sys.exit(__doc__)
     index, picture, times = sys.argv[1], sys.argv[2], [float(t) for t in sys.argv[3:]]
     folder = os.path.dirname(index)
     entries = [(float(d.get("timestep")), d.get("file")) for d in ET.parse(index).iter("DataSet")]

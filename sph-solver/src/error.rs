@@ -10,14 +10,25 @@ pub enum RunError {
     #[error(
         "the run diverged in step {step} at t = {time:.6} s: particle {id} at {position:?} has a \
          velocity, density or acceleration that is not a usable number. Try a smaller \
-         numerics.cfl, a larger numerics.sound_speed or more numerics.artificial_viscosity; the \
-         last checkpoint is intact"
+         numerics.cfl, a larger numerics.sound_speed or more numerics.artificial_viscosity; \
+         checkpoints written before are intact"
     )]
     Diverged {
         /// Global id of the first such particle.
         id: u64,
         /// Where it is, m.
         position: Vec<f64>,
+        /// Step.
+        step: u64,
+        /// Time, s.
+        time: f64,
+    },
+    /// Some force was too large to be squared, for one step.
+    #[error(
+        "a force overflowed in step {step} at t = {time:.6} s. Try a smaller numerics.cfl or a larger \
+         numerics.sound_speed"
+    )]
+    Overflow {
         /// Step.
         step: u64,
         /// Time, s.
@@ -45,7 +56,7 @@ pub enum RunError {
     #[error(
         "the time step fell to {dt:e} s in step {step} at t = {time:.6} s, far below the acoustic \
          limit: some particle feels an enormous force. Check for overlapping regions or solids \
-         near it; the last checkpoint is intact"
+         near it; checkpoints written before are intact"
     )]
     StepCollapsed {
         /// Step.
@@ -89,6 +100,31 @@ pub enum RunError {
     /// Ranks that are threads failed to start or panicked.
     #[error("{0}")]
     Ranks(String),
+    /// Ranks would continue from different states.
+    #[error(
+        "the ranks see different checkpoints in {}: the folder must be the same on all machines",
+        path.display()
+    )]
+    DifferentCheckpoints {
+        /// The folder.
+        path: std::path::PathBuf,
+    },
+    /// The checkpoint is already beyond the end.
+    #[error(
+        "the checkpoint is at t = {time} s, which is not before the end of the run at {end} s: give a \
+         later --end-time"
+    )]
+    NothingLeft {
+        /// Time of the checkpoint, s.
+        time: f64,
+        /// End of the run, s.
+        end: f64,
+    },
+    /// Ranks are asked for twice.
+    #[error(
+        "--ranks is for ranks as threads; under mpirun the ranks are the processes: leave it out"
+    )]
+    RanksUnderMpi,
     /// There is no checkpoint to continue from.
     #[error(
         "there is no checkpoint in {} to resume from. Run without --resume, and with \
@@ -139,12 +175,16 @@ impl RunError {
         matches!(
             self,
             Self::Diverged { .. }
+                | Self::Overflow { .. }
+                | Self::DifferentCheckpoints { .. }
                 | Self::Left { .. }
                 | Self::StepCollapsed { .. }
                 | Self::TooManyRanks { .. }
                 | Self::Scene(_)
                 | Self::OtherScene { .. }
                 | Self::NothingToResume { .. }
+                | Self::NothingLeft { .. }
+                | Self::RanksUnderMpi
                 | Self::Comm(CommError::DifferentBuild { .. })
         )
     }
@@ -158,6 +198,8 @@ impl RunError {
                 | Self::WithoutMpi { .. }
                 | Self::OtherScene { .. }
                 | Self::NothingToResume { .. }
+                | Self::NothingLeft { .. }
+                | Self::RanksUnderMpi
                 | Self::Folder { .. }
         )
     }

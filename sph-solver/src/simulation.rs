@@ -162,9 +162,19 @@ where
         self.clock.time
     }
 
+    /// The step that leads to the present positions, s.
+    pub fn time_step(&self) -> f64 {
+        self.clock.dt
+    }
+
     /// Constants of the run.
     pub fn model(&self) -> &Model<D> {
         &self.model
+    }
+
+    /// Makes the next step begin with new lists, and with a look for particles outside the domain.
+    pub fn renew_lists(&mut self) {
+        self.lists_due = true;
     }
 
     /// Number of finished steps.
@@ -365,7 +375,8 @@ where
         if extremes.fault == 0.0 {
             return Ok(());
         }
-        let first = self.rank.faulty(self.model.speed_limit());
+        let density0 = self.model.equation_of_state.density0();
+        let first = self.rank.faulty(self.model.speed_limit(), density0);
         match first_of_all(self.comm, first.as_ref())? {
             Some((id, position)) => Err(RunError::Diverged {
                 id,
@@ -373,11 +384,7 @@ where
                 step: self.clock.step,
                 time: self.clock.time,
             }),
-            None => Err(RunError::StepCollapsed {
-                step: self.clock.step,
-                time: self.clock.time,
-                dt: f64::NAN,
-            }),
+            None => Err(RunError::Overflow { step: self.clock.step, time: self.clock.time }),
         }
     }
 }

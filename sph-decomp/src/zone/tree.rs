@@ -39,9 +39,10 @@ impl<const D: usize> Block<D> {
     }
 }
 
-/// Relative widening of the reach. Neighbour searches in 32-bit fixed point with 2²⁴ units per
-/// reach are off by less than 10⁻⁷.
-const MARGIN: f64 = 1e-6;
+/// Relative widening of the reach. A neighbour search in 32-bit fixed point with 2²⁰ units per cell
+/// of one reach may list pairs up to 5·10⁻⁶ beyond the reach; the zone must hold those too, or lists
+/// would depend on the ranks.
+const MARGIN: f64 = 1e-5;
 
 /// The message that tells another rank of some blocks.
 pub(super) fn to_bytes<const D: usize>(blocks: &[Block<D>]) -> Vec<u8> {

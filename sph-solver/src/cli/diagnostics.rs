@@ -42,10 +42,10 @@ fn render(error: &dyn miette::Diagnostic, terminal: bool) -> String {
 }
 
 /// Whether this process is a rank other than 0 of an MPI job, as the usual launchers tell it.
-fn is_later_rank() -> bool {
+pub fn is_later_rank() -> bool {
     const RANK_VARIABLES: [&str; 3] = ["OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"];
     let rank = RANK_VARIABLES.iter().find_map(|name| std::env::var(name).ok());
-    cfg!(feature = "mpi") && rank.is_some_and(|rank| rank != "0")
+    rank.is_some_and(|rank| rank != "0")
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ pub struct RunArguments {
     /// Ranks as threads of this process (under mpirun, the ranks are the processes)
     #[arg(long, value_name = "N", value_parser = count)]
     ranks: Option<usize>,
-    /// Threads per rank [default: all cores divided by the ranks]
+    /// Threads per rank [default: all cores divided by the ranks; 1 under mpirun]
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
     /// Simulated time between checkpoints, s, instead of the scene's
@@ -55,7 +55,9 @@ pub fn main(arguments: &RunArguments) -> ExitCode {
     let world = match World::start() {
         Ok(world) => world,
         Err(error) => {
-            diagnostics::show_plain(&error);
+            if !diagnostics::is_later_rank() {
+                diagnostics::show_plain(&error);
+            }
             return ExitCode::from(BAD_INPUT);
         }
     };
@@ -82,7 +84,7 @@ pub fn main(arguments: &RunArguments) -> ExitCode {
 }
 
 fn simulate(world: &World, arguments: &RunArguments) -> Result<(), RunError> {
-    let scene = arguments.scene.read()?;
+    let scene = world.agree(arguments.scene.read().map_err(RunError::from))?;
     let options = arguments.options();
     let progress = Progress::new(arguments.quiet || !world.speaks());
     let result = run(world, &scene, &options, &|status| progress.show(status));

@@ -9,6 +9,9 @@ use bytemuck::Pod;
 use sph_kernels::{Kernel, Real};
 use std::marker::PhantomData;
 
+/// Denser than this multiple of ρ0 a flow is no longer weakly compressible.
+pub const DENSEST: f64 = 2.0;
+
 /// Density at the new positions; leaves the pressure in the new records.
 #[derive(Debug)]
 pub struct DensityPass<'a, const D: usize, S, F, W, K> {
@@ -49,7 +52,7 @@ where
                 density = density0;
             }
             // Written so that NaN is a fault too.
-            if !(density > 0.0 && density < f64::MAX) {
+            if !(density > 0.0 && density < DENSEST * density0) {
                 fault = 1.0;
             }
             block.density[k] = density;

@@ -17,7 +17,7 @@
 mod density;
 mod force;
 
-pub use density::DensityPass;
+pub use density::{DENSEST, DensityPass};
 pub use force::{ForcePass, kicked};
 
 use crate::records::Record;

@@ -4,7 +4,7 @@ mod rebuild;
 mod traveller;
 
 use crate::block::FluidColumns;
-use crate::passes::Surroundings;
+use crate::passes::{DENSEST, Surroundings};
 use crate::records::Record;
 use crate::state::State;
 use crate::terms::Acceleration;
@@ -120,7 +120,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     }
 
     /// The owned fluid particle with the lowest id whose numbers are out of range, if any.
-    pub fn faulty(&self, speed_limit: f64) -> Option<(u64, [f64; D])> {
+    pub fn faulty(&self, speed_limit: f64, density0: f64) -> Option<(u64, [f64; D])> {
         let fits = |v: &[f64; D]| v.iter().map(|c| c * c).sum::<f64>() <= speed_limit * speed_limit;
         let sound = |k: &usize| {
             let state = &self.state;
@@ -129,7 +129,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             fits(&state.velocity[*k])
                 && a.iter().all(|c| c.is_finite())
                 && density > 0.0
-                && density.is_finite()
+                && density < DENSEST * density0
         };
         (0..self.fluid.owned())
             .filter(|k| !sound(k))

@@ -66,8 +66,34 @@ pub fn save<const D: usize>(
     Ok(())
 }
 
-/// Particles of this rank, clock and progress from the latest whole checkpoint. The number of ranks may differ from that of the run that wrote it.
+/// Particles of this rank, clock and progress from the latest whole checkpoint. The number of ranks
+/// may differ from that of the run that wrote it. Collective.
 pub fn load<const D: usize>(
+    comm: &dyn Communicator,
+    plan: &RunPlan<D>,
+) -> Result<(State<D>, Clock, Progress), RunError> {
+    let mine = load_here(comm, plan).and_then(|loaded| {
+        let (time, end) = (loaded.1.time, plan.end_time);
+        if time < end { Ok(loaded) } else { Err(RunError::NothingLeft { time, end }) }
+    });
+    // Each rank has looked for itself, perhaps on another machine: only agreement counts.
+    let found = match &mine {
+        Ok((_, clock, _)) => format!("step {}", clock.step),
+        Err(RunError::NothingToResume { .. }) => "nothing".into(),
+        Err(RunError::OtherScene { .. }) => "another scene".into(),
+        Err(_) => "an error".into(),
+    };
+    let all = comm.all_gather(found.as_bytes())?;
+    // An error that only this rank has met is worth more than the news that ranks differ.
+    let agreed = all.iter().all(|other| other == found.as_bytes());
+    let own_error = mine.as_ref().is_err_and(|error| !error.is_on_all_ranks());
+    if !agreed && !own_error {
+        return Err(RunError::DifferentCheckpoints { path: plan.out.clone() });
+    }
+    mine
+}
+
+fn load_here<const D: usize>(
     comm: &dyn Communicator,
     plan: &RunPlan<D>,
 ) -> Result<(State<D>, Clock, Progress), RunError> {

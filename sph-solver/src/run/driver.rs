@@ -10,7 +10,7 @@ use super::schedule::Schedule;
 use crate::error::RunError;
 use crate::model::Model;
 use crate::physics::Physics;
-use crate::simulation::{Clock, FullStep, Lost, Simulation};
+use crate::simulation::{FullStep, Lost, Simulation};
 use crate::state::{FLUID, State};
 use crate::team::Team;
 use crate::timings::Phase;
@@ -30,7 +30,7 @@ pub struct Status {
     pub start: f64,
     /// Time at which it ends, s.
     pub end: f64,
-    /// Fluid particles times steps of this rank since the start.
+    /// Fluid particles times steps since the start, taking all ranks to have as many as this one.
     pub particle_updates: u64,
     /// Wall-clock time since the start.
     pub elapsed: Duration,
@@ -47,8 +47,8 @@ pub struct Finished<const D: usize> {
     pub budgets: (Budget<D>, Budget<D>),
     /// Digest of the final state of all ranks.
     pub digest: Digest,
-    /// Clock at the end.
-    pub clock: Clock,
+    /// Last time step, s.
+    pub time_step: f64,
     /// Particles taken out, on all ranks, over the whole run.
     pub lost: u64,
     /// Snapshots written by this process.
@@ -85,11 +85,8 @@ where
     let resumed_at = clock.map(|clock| clock.time);
     // Outputs of steps that the checkpoint has not seen yet are written again.
     let written_until = resumed_at.map(f64::next_down);
-    if comm.rank() == 0 && resumed_at.is_none() {
-        // A later --resume must not find checkpoints of an earlier run.
-        std::fs::create_dir_all(&plan.out)
-            .map_err(|source| RunError::Folder { path: plan.out.clone(), source })?;
-        sph_io::remove_checkpoints(&plan.out, ..)?;
+    if comm.rank() == 0 {
+        clear(plan, resumed_at.is_some())?;
     }
     let mut files = if comm.rank() == 0 { Some(Files::open(plan, written_until)?) } else { None };
     let mut out = Outputs {
@@ -112,6 +109,11 @@ where
             out.checkpoint(&simulation)?;
         }
         let last = time >= plan.end_time;
+        if last {
+            // So that nothing outside the domain is in the last report.
+            simulation.renew_lists();
+        }
+        let time_step = simulation.time_step();
         let report = last || out.snapshots.due(time) || out.samples.due(time);
         let full = simulation.step(report)?;
         out.lost(&mut simulation, files.as_mut())?;
@@ -123,7 +125,7 @@ where
                     digest: digest(comm, &full)?,
                     last: full,
                     budgets: (first, budget),
-                    clock: simulation.clock()?,
+                    time_step,
                     lost: out.lost,
                     snapshots: files.map_or(0, |files| files.snapshots()),
                     resumed_at,
@@ -137,11 +139,25 @@ where
             time,
             start: begin,
             end: plan.end_time,
-            particle_updates: simulation.counters().particle_updates,
+            particle_updates: simulation.counters().particle_updates * comm.size() as u64,
             elapsed: start.elapsed(),
             exposed_seconds: simulation.exposed().wait_seconds,
         });
     }
+}
+
+/// Takes away what an earlier run left in the folder and could be mistaken for a result of this one.
+fn clear<const D: usize>(plan: &RunPlan<D>, resumes: bool) -> Result<(), RunError> {
+    let folder = |source| RunError::Folder { path: plan.out.clone(), source };
+    std::fs::create_dir_all(&plan.out).map_err(folder)?;
+    match std::fs::remove_file(plan.out.join("summary.json")) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(folder(error)),
+        _ => (),
+    }
+    if !resumes {
+        sph_io::remove_checkpoints(&plan.out, ..)?;
+    }
+    Ok(())
 }
 
 struct Outputs<'a, const D: usize> {

@@ -43,8 +43,8 @@ pub fn run(
     watch: &(dyn Fn(Status) + Sync),
 ) -> Result<Summary, RunError> {
     match scene.dimension() {
-        2 => Launch::<2>::new(scene, options)?.run(world, watch),
-        _ => Launch::<3>::new(scene, options)?.run(world, watch),
+        2 => world.agree(Launch::<2>::new(scene, options))?.run(world, watch),
+        _ => world.agree(Launch::<3>::new(scene, options))?.run(world, watch),
     }
 }
 
@@ -97,7 +97,9 @@ impl<const D: usize> Launch<D> {
                 summaries.into_iter().next().ok_or(RunError::Ranks("no rank ran".into()))
             }
             #[cfg(feature = "mpi")]
-            (World::Mpi(mpi), _) => {
+            (World::Mpi(_), Some(_)) => Err(RunError::RanksUnderMpi),
+            #[cfg(feature = "mpi")]
+            (World::Mpi(mpi), None) => {
                 let result = self.rank(mpi, "mpi", self.threads.unwrap_or(1), watch);
                 match result {
                     // Only this rank knows, and the others wait for it.

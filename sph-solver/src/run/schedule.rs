@@ -25,12 +25,6 @@ impl Schedule {
         Self { next, ..self }
     }
 
-    /// Skips output 0, the one at the start.
-    #[must_use]
-    pub fn after_start(self) -> Self {
-        self.from(1)
-    }
-
     /// Whether an output is due at `time` (s).
     pub fn due(&self, time: f64) -> bool {
         // Infinity times zero is NaN, which compares as not due.
@@ -39,7 +33,9 @@ impl Schedule {
 
     /// Notes that the output due at `time` was made; outputs missed by a long step are skipped.
     pub fn done(&mut self, time: f64) {
-        while self.due(time) {
+        // At once to the last multiple, then past rounding; beyond 2^53 numbers have no successor.
+        self.next = self.next.max((time / self.interval) as u64);
+        while self.due(time) && self.next < 1 << 53 {
             self.next += 1;
         }
     }
@@ -61,6 +57,13 @@ mod tests {
         }
         assert_eq!(made, [0.0, 0.1, 0.42, 0.5]);
         assert_eq!(schedule.next(), 6);
+    }
+
+    #[test]
+    fn an_absurdly_short_interval_ends() {
+        let mut schedule = Schedule::new(Some(1e-300));
+        schedule.done(1.0);
+        assert!(schedule.next() >= 1 << 53);
     }
 
     #[test]

@@ -136,7 +136,7 @@ pub struct Energy {
     pub elastic: f64,
 }
 
-/// Puts the summary together from all ranks. Collective; the same on all of them but for CPU time.
+/// Puts the summary together from all ranks; all of them get the same. Collective.
 pub fn summarize<const D: usize, S, K, P>(
     comm: &dyn Communicator,
     simulation: &Simulation<'_, D, S, K, P>,
@@ -206,7 +206,7 @@ where
         particles: Particles { fluid: counts[0], wall: counts[1] },
         steps: finished.last.step,
         simulated_time: finished.last.time,
-        time_step: finished.clock.dt,
+        time_step: finished.time_step,
         wall_seconds,
         cpu_seconds: cpu.is_finite().then_some(cpu),
         phases: Phases { rebuild, density, force, output },

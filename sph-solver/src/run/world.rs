@@ -35,6 +35,28 @@ impl World {
         }
     }
 
+    /// The result of something that every process does for itself, such as reading the scene. When
+    /// only some processes fail, those end the job with their message. Collective.
+    pub fn agree<T>(&self, result: Result<T, RunError>) -> Result<T, RunError> {
+        match self {
+            Self::Process => result,
+            #[cfg(feature = "mpi")]
+            Self::Mpi(mpi) => {
+                let mut failed = [u64::from(result.is_err())];
+                mpi.sum_u64(&mut failed)?;
+                match result {
+                    Err(error) if failed[0] < mpi.size() as u64 => mpi.abort(&error.to_string()),
+                    Ok(_) if failed[0] > 0 => {
+                        // The others are about to end the job; going on would only confuse.
+                        mpi.all_gather(&[])?;
+                        Err(RunError::Ranks("another process could not begin".into()))
+                    }
+                    result => result,
+                }
+            }
+        }
+    }
+
     /// Whether this process speaks for the run: writes files and messages.
     pub fn speaks(&self) -> bool {
         match self {

@@ -39,7 +39,7 @@ pub struct Numerics {
     /// absent, 0.02 for an inviscid fluid; a fluid with a physical viscosity has no artificial one.
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     pub artificial_viscosity: Option<At<f64>>,
-    /// Density diffusion δ of the δ-SPH scheme: the term has the strength δ h c0. 0 leaves it out.
+    /// Density diffusion δ of the δ-SPH scheme: the term has the strength δ h c0. 0 makes it vanish.
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     #[serde(default = "default_density_diffusion")]
     pub density_diffusion: At<f64>,
