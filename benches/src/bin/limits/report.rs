@@ -90,7 +90,8 @@ pub fn print_steps(rows: &[StepRow]) {
     println!(
         "| case | precision | threads | support | skin | fluid (all) particles | entries | \
          M updates/s fluid (all) | entry visits M/s | ms/step | density / force / rebuild % | \
-         steps per rebuild | ms/rebuild | bytes/particle peak (counted) | cores had |"
+         steps per rebuild | ms/rebuild | peak bytes per particle (per fluid particle; counted) | \
+         cores had |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for row in rows {
@@ -100,7 +101,7 @@ pub fn print_steps(rows: &[StepRow]) {
         };
         println!(
             "| {span} | {} | {} | {} | {} | {} ({}) | {:.0} | {:.2} ({:.2}) | {:.0} | {:.1} | \
-             {:.0} / {:.0} / {:.0} | {:.1} | {:.1} | {:.0} ({:.0}) | {:.2} |",
+             {:.0} / {:.0} / {:.0} | {:.1} | {:.1} | {:.0} ({:.0}; {:.0}) | {:.2} |",
             if row.case.double { "double" } else { "mixed" },
             row.case.threads,
             row.case.support,
@@ -118,6 +119,7 @@ pub fn print_steps(rows: &[StepRow]) {
             row.steps_per_rebuild,
             row.rebuild_milliseconds,
             row.peak_bytes,
+            row.peak_bytes * row.particles as f64 / row.fluid as f64,
             row.counted_bytes,
             row.cores_had,
         );

@@ -97,7 +97,9 @@ pub fn measure(quick: bool, skin: f64) -> Result<Vec<StepRow>, Box<dyn Error>> {
         }
         let small = collapse(0.009, 60);
         cases.extend([0.05, 0.1, 0.15, 0.2, 0.3].map(|skin| Case { skin, ..small }));
+        // The default support of scenes, and one with 92 neighbours.
         cases.push(Case { support: 3.0, ..small });
+        cases.push(Case { support: 2.8, ..collapse(0.0043, 16) });
         cases.push(case(0.0133, Span::FromRest(1.0)));
     }
     cases.iter().map(in_a_process).collect()
