@@ -28,7 +28,7 @@ impl Kernel for Gaussian {
     }
 
     #[inline(always)]
-    fn slope<L: Lanes>(q: L) -> L {
+    fn slope_shape<L: Lanes>(q: L) -> L {
         Self::w(q) * constant(-18.0)
     }
 }

@@ -16,7 +16,7 @@ use crate::{Lanes, Real};
 ///
 /// `∇_i W(r_ij, R) = σ_d / R^(d+2) · slope(q) · r_ij`, `r_ij = x_i − x_j`, in 1/m^(d+1).
 ///
-/// [`w`](Self::w) and [`slope`](Self::slope) are for loops that keep the constants outside;
+/// [`w`](Self::w), [`slope`](Self::slope) and its two factors are for loops that keep the constants outside;
 /// [`value`](Self::value) and [`gradient`](Self::gradient) are complete.
 pub trait Kernel: Copy + Send + Sync + 'static {
     /// Name in files, such as `"wendland-c2"`.
@@ -34,8 +34,18 @@ pub trait Kernel: Copy + Send + Sync + 'static {
     /// `w(q)` for finite q ≥ 0; zero for q ≥ 1. No branch.
     fn w<L: Lanes>(q: L) -> L;
 
+    /// A constant factor of the slope. Loops that multiply by constants anyway take it with them and
+    /// save a multiplication per pair: `slope(q) = SLOPE_FACTOR · slope_shape(q)`.
+    const SLOPE_FACTOR: f64 = 1.0;
+
+    /// [`slope`](Self::slope) without [`SLOPE_FACTOR`](Self::SLOPE_FACTOR).
+    fn slope_shape<L: Lanes>(q: L) -> L;
+
     /// `w'(q) / q` for finite q ≥ 0; finite at q = 0, zero for q ≥ 1. No branch.
-    fn slope<L: Lanes>(q: L) -> L;
+    #[inline(always)]
+    fn slope<L: Lanes>(q: L) -> L {
+        Self::slope_shape(q) * constant(Self::SLOPE_FACTOR)
+    }
 
     /// `W(r, R)` in `D` dimensions, 1/m^D, from the distance and the support radius in m.
     #[inline(always)]

@@ -31,7 +31,7 @@ impl Kernel for CubicSpline {
     }
 
     #[inline(always)]
-    fn slope<L: Lanes>(q: L) -> L {
+    fn slope_shape<L: Lanes>(q: L) -> L {
         let half = constant(0.5);
         let m = inside(q);
         let inner = q.mul_add(constant(18.0), constant(-12.0));
@@ -74,7 +74,7 @@ impl Kernel for QuinticSpline {
     }
 
     #[inline(always)]
-    fn slope<L: Lanes>(q: L) -> L {
+    fn slope_shape<L: Lanes>(q: L) -> L {
         let one = constant(1.0);
         let s = q * constant(3.0);
         let [a, b] = [3.0, 2.0].map(|end| {

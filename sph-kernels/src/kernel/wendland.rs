@@ -22,6 +22,7 @@ pub struct WendlandC2;
 impl Kernel for WendlandC2 {
     const NAME: &'static str = "wendland-c2";
     const RADIUS_OVER_H: f64 = 2.0;
+    const SLOPE_FACTOR: f64 = -20.0;
 
     #[inline]
     fn norm(dimension: usize) -> f64 {
@@ -36,9 +37,9 @@ impl Kernel for WendlandC2 {
     }
 
     #[inline(always)]
-    fn slope<L: Lanes>(q: L) -> L {
+    fn slope_shape<L: Lanes>(q: L) -> L {
         let m = inside(q);
-        m * m * (m * constant(-20.0))
+        m * m * m
     }
 }
 
@@ -52,6 +53,7 @@ pub struct WendlandC4;
 impl Kernel for WendlandC4 {
     const NAME: &'static str = "wendland-c4";
     const RADIUS_OVER_H: f64 = 2.0;
+    const SLOPE_FACTOR: f64 = -56.0 / 3.0;
 
     #[inline]
     fn norm(dimension: usize) -> f64 {
@@ -67,10 +69,10 @@ impl Kernel for WendlandC4 {
     }
 
     #[inline(always)]
-    fn slope<L: Lanes>(q: L) -> L {
+    fn slope_shape<L: Lanes>(q: L) -> L {
         let m = inside(q);
         let m2 = m * m;
-        m2 * m2 * (m * q.mul_add(constant(-280.0 / 3.0), constant(-56.0 / 3.0)))
+        m2 * m2 * (m * q.mul_add(constant(5.0), constant(1.0)))
     }
 }
 
@@ -84,6 +86,7 @@ pub struct WendlandC6;
 impl Kernel for WendlandC6 {
     const NAME: &'static str = "wendland-c6";
     const RADIUS_OVER_H: f64 = 2.0;
+    const SLOPE_FACTOR: f64 = -22.0;
 
     #[inline]
     fn norm(dimension: usize) -> f64 {
@@ -103,10 +106,10 @@ impl Kernel for WendlandC6 {
     }
 
     #[inline(always)]
-    fn slope<L: Lanes>(q: L) -> L {
+    fn slope_shape<L: Lanes>(q: L) -> L {
         let m = inside(q);
         let m2 = m * m;
-        let polynomial = q.mul_add(constant(-352.0), constant(-154.0)).mul_add(q, constant(-22.0));
+        let polynomial = q.mul_add(constant(16.0), constant(7.0)).mul_add(q, constant(1.0));
         m2 * m2 * m2 * (m * polynomial)
     }
 }
