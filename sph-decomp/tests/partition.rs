@@ -105,6 +105,29 @@ fn loads_are_even_for_any_number_of_ranks() {
 }
 
 #[test]
+fn regions_divide_space_as_owners_do() {
+    let mut random = random(5);
+    let positions: Vec<[f64; 3]> = (0..200).map(|_| [random(), random(), random()]).collect();
+    for ranks in [1, 2, 7, 16] {
+        let orb = ThreadRanks::run(ranks, |comm| {
+            let mine = if comm.rank() == 0 { &positions[..] } else { &[] };
+            Orb::build(&comm, mine, &[])
+        });
+        let orb = orb.unwrap().swap_remove(0);
+        let regions = orb.regions();
+        assert_eq!(regions.len(), ranks);
+        for _ in 0..500 {
+            let x = [2.0 * random() - 0.5, random(), random()];
+            let holds = |(low, high): &([f64; 3], [f64; 3])| {
+                (0..3).all(|k| low[k] <= x[k] && x[k] < high[k])
+            };
+            let holders: Vec<usize> = (0..ranks).filter(|&r| holds(&regions[r])).collect();
+            assert_eq!(holders, [orb.owner(&x)], "{x:?}");
+        }
+    }
+}
+
+#[test]
 fn cuts_fall_between_the_layers_of_a_lattice() {
     // Rounding errors of 10⁻¹⁶ must not decide who owns a particle of the middle layers.
     let cloud = Cloud::<2>::lattice(16, 0.1, 1e-14, 1.0, 2);

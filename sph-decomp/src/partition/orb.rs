@@ -114,6 +114,35 @@ impl<const D: usize> Orb<D> {
         }
         Ok(Self { nodes })
     }
+
+    /// The piece of space of every rank: its lower corner, which belongs to it, and its upper one,
+    /// which does not. Outer pieces reach to infinity.
+    ///
+    /// ```
+    /// use sph_decomp::{Orb, Solo};
+    ///
+    /// let orb = Orb::build(&Solo, &[[1.0, 2.0]], &[])?;
+    /// assert_eq!(orb.regions(), [([f64::NEG_INFINITY; 2], [f64::INFINITY; 2])]);
+    /// # Ok::<(), sph_decomp::PartitionError>(())
+    /// ```
+    pub fn regions(&self) -> Vec<([f64; D], [f64; D])> {
+        let everything = ([f64::NEG_INFINITY; D], [f64::INFINITY; D]);
+        let mut regions = vec![everything; self.nodes.len() + 1];
+        let mut of_node = vec![everything; self.nodes.len()];
+        // A node comes before its children.
+        for (number, node) in self.nodes.iter().enumerate() {
+            let (mut low, mut high) = (of_node[number], of_node[number]);
+            low.1[node.axis] = node.cut;
+            high.0[node.axis] = node.cut;
+            for (child, region) in [(node.low, low), (node.high, high)] {
+                match child {
+                    Child::Node(child) => of_node[child as usize] = region,
+                    Child::Rank(rank) => regions[rank as usize] = region,
+                }
+            }
+        }
+        regions
+    }
 }
 
 impl<const D: usize> Partition<D> for Orb<D> {
