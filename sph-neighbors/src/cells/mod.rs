@@ -118,19 +118,19 @@ impl<const D: usize> CellList<D> {
 
     /// Places in [`order`](Self::order) of the particles in a row of cells: from cell `first` to the
     /// cell `last` (included) along x, the other coordinates those of `first`.
-    #[inline]
+    #[inline(always)]
     pub fn row(&self, first: [i64; D], last: i64) -> Range<usize> {
         self.table.places(self.table.row(first, last))
     }
 
     /// Numbers of the cells of such a row in the table of cells.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn row_of_cells(&self, first: [i64; D], last: i64) -> Range<usize> {
         self.table.row(first, last)
     }
 
     /// Places of the particles in cells of the table, given their numbers.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn places(&self, cells: Range<usize>) -> Range<usize> {
         self.table.places(cells)
     }

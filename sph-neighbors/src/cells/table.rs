@@ -32,7 +32,7 @@ pub fn volume<const D: usize>(low: &[i64; D], high: &[i64; D], limit: usize) -> 
 }
 
 /// Number of a cell in the box that starts at `low` and reaches to `high`.
-#[inline]
+#[inline(always)]
 pub fn number<const D: usize>(cell: &[i64; D], low: &[i64; D], high: &[i64; D]) -> usize {
     let mut number = 0;
     for axis in (0..D).rev() {
@@ -97,7 +97,7 @@ impl<const D: usize> Table<D> {
     }
 
     /// Numbers of the cells of the table from cell `first` to the cell `last` along x.
-    #[inline]
+    #[inline(always)]
     pub fn row(&self, mut first: [i64; D], last: i64) -> Range<usize> {
         let Some((low, high)) = &self.bounds else {
             return 0..0;
@@ -122,7 +122,7 @@ impl<const D: usize> Table<D> {
     }
 
     /// Places of the particles in cells of the table, given their numbers.
-    #[inline]
+    #[inline(always)]
     pub fn places(&self, cells: Range<usize>) -> Range<usize> {
         self.starts[cells.start] as usize..self.starts[cells.end] as usize
     }

@@ -10,12 +10,12 @@ mod search;
 use crate::{CellList, LevelList};
 use chunk::{CHUNK, Chunk, Scratch};
 use plan::{Plan, Uniform, Variable};
-use pool::Pool;
-use query::Query;
 use rayon::prelude::*;
 
 pub use plan::PairReach;
 pub(crate) use plan::radius_in_units;
+pub(crate) use pool::Pool;
+pub(crate) use query::{Group, Query};
 
 /// For each target, the sources within reach, in canonical order.
 ///

@@ -98,6 +98,7 @@ impl<const D: usize> Group<D> {
     /// Calls `visit` with this group and then its images in periodic boxes that may have sources
     /// within reach: a source near an image of a target is as far from it as its own image from the
     /// target.
+    #[inline(always)]
     pub fn for_each_image(&self, cells: &CellList<D>, reach: f64, mut visit: impl FnMut(&Self)) {
         let periods = cells.grid().period_units();
         if periods.iter().all(|&period| period == 0) {
