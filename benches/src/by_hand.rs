@@ -6,16 +6,12 @@
 
 use crate::SweepCase;
 use sph_kernels::{Lanes, Real, Vectorized};
-use sph_neighbors::NeighborList;
+use sph_neighbors::{CLUSTER, ClusterList};
 use sph_solver::records::Record;
 use sph_solver::terms::Acceleration;
-use std::f64::consts::PI;
 
 /// Particles per entry into vector code, as in the solver.
 const GRAIN: usize = 256;
-
-/// Norm of Wendland C2 in three dimensions.
-const NORM: f64 = 21.0 / (2.0 * PI);
 
 /// dρ/dt = ρ_i Σ (v_i − v_j)·∇W V + 2 δ h c0 Σ Ψ F V.
 pub fn density_rates<S: Real>(case: &SweepCase<S>, strength: f64, gradient: [f64; 3]) -> Vec<f64> {
@@ -59,7 +55,7 @@ struct Density<'a, S> {
     first: usize,
     records: &'a [Record<S>],
     density: &'a [f64],
-    list: &'a NeighborList,
+    list: &'a ClusterList,
     unit: f64,
     radius: f64,
     strength: f64,
@@ -71,7 +67,7 @@ struct Force<'a, S> {
     first: usize,
     records: &'a [Record<S>],
     density: &'a [f64],
-    list: &'a NeighborList,
+    list: &'a ClusterList,
     unit: f64,
     radius: f64,
     rates: &'a mut [Acceleration<3>],
@@ -82,36 +78,68 @@ fn lanes<L: Lanes>(x: f64) -> L {
     L::splat(L::Scalar::from_f64(x))
 }
 
+/// Targets of a cluster, from the first on: their records and up to eight numbers made from their
+/// densities. Lanes without a target repeat the last one.
+#[inline(always)]
+fn cluster<L: Lanes>(
+    records: &[Record<L::Scalar>],
+    density: &[f64],
+    first: usize,
+) -> ([L; 8], [L::Scalar; CLUSTER]) {
+    let count = density.len();
+    let index: [u32; CLUSTER] = std::array::from_fn(|l| (first + l.min(count - 1)) as u32);
+    let inverse = std::array::from_fn(|l| L::Scalar::from_f64(1.0 / density[l.min(count - 1)]));
+    (L::gather(records, &index), inverse)
+}
+
+#[inline(always)]
+fn numbers<L: Lanes>(lanes: L) -> [f64; CLUSTER] {
+    let mut all = [L::Scalar::from_f64(0.0); CLUSTER];
+    lanes.store(&mut all);
+    all.map(Real::to_f64)
+}
+
 impl<S: Real> Vectorized for Density<'_, S> {
     type Scalar = S;
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes<Scalar = S>>(self) {
-        let unit: L = lanes(self.unit);
-        let inverse_radius: L = lanes(1.0 / self.radius);
-        let norm: L = lanes(NORM / (self.radius * self.radius));
+        let per_unit: L = lanes(1.0 / self.unit);
+        let to_q: L = lanes(self.unit / self.radius);
         let one: L = lanes(1.0);
-        let strength: L = lanes(-2.0 * self.strength);
         let [gx, gy, gz] = self.gradient.map(lanes::<L>);
-        for ((t, rate), &density) in (self.first..).zip(self.rates).zip(self.density) {
-            let [x, y, z, u, v, w, deviation, _] = self.records[t].map(L::splat);
-            let density: L = lanes(density);
-            let mut sum = L::zero();
-            for index in self.list.of(t).chunks_exact(L::LANES) {
-                let [xj, yj, zj, uj, vj, wj, deviation_j, volume] = L::gather(self.records, index);
-                let dx = L::coordinate_difference(x, xj) * unit;
-                let dy = L::coordinate_difference(y, yj) * unit;
-                let dz = L::coordinate_difference(z, zj) * unit;
-                let distance2 = dz.mul_add(dz, dy.mul_add(dy, dx * dx));
-                let m = (one - distance2.sqrt() * inverse_radius).max(L::zero());
-                let slope = m * m * (m * lanes(-20.0)) * norm * volume;
-                let approach = (w - wj).mul_add(dz, (v - vj).mul_add(dy, (u - uj) * dx));
-                sum = density.mul_add(approach * slope, sum);
-                let psi = (deviation_j - deviation) + gz.mul_add(dz, gy.mul_add(dy, gx * dx));
-                sum = strength.mul_add(psi * slope, sum);
+        let (records, list) = (self.records, self.list);
+        let end = self.first + self.rates.len();
+        for (number, targets) in list.clusters().within(self.first..end) {
+            for start in targets.clone().step_by(L::LANES) {
+                let own = start - self.first..targets.end.min(start + L::LANES) - self.first;
+                let (words, inverse) = cluster::<L>(records, &self.density[own.clone()], start);
+                let [x, y, z, u, v, w, deviation, _] = words;
+                let strength = lanes::<L>(-2.0 * self.strength) * L::load(&inverse);
+                let u = strength.mul_add(gx, u);
+                let v = strength.mul_add(gy, v);
+                let w = strength.mul_add(gz, w);
+                let strength = strength * per_unit;
+                let mut sum = L::zero();
+                for &j in list.sources(number) {
+                    let [xj, yj, zj, uj, vj, wj, deviation_j, weight] =
+                        records[j as usize].map(L::splat);
+                    let dx = L::coordinate_difference(x, xj);
+                    let dy = L::coordinate_difference(y, yj);
+                    let dz = L::coordinate_difference(z, zj);
+                    let distance2 = dz.mul_add(dz, dy.mul_add(dy, dx * dx));
+                    let m = (one - distance2.sqrt() * to_q).max(L::zero());
+                    let slope = m * m * m * weight;
+                    let flux = (w - wj).mul_add(dz, (v - vj).mul_add(dy, (u - uj) * dx));
+                    let coefficient = strength.mul_add(deviation_j - deviation, flux);
+                    sum = coefficient.mul_add(slope, sum);
+                }
+                let rates = self.rates[own.clone()].iter_mut().zip(&self.density[own]);
+                for ((rate, density), sum) in rates.zip(numbers(sum)) {
+                    *rate = sum * density;
+                }
             }
-            *rate = sum.sum().to_f64();
         }
     }
 }
@@ -122,28 +150,35 @@ impl<S: Real> Vectorized for Force<'_, S> {
 
     #[inline(always)]
     fn run<L: Lanes<Scalar = S>>(self) {
-        let unit: L = lanes(self.unit);
-        let inverse_radius: L = lanes(1.0 / self.radius);
-        let norm: L = lanes(NORM / (self.radius * self.radius));
+        let to_q: L = lanes(self.unit / self.radius);
         let one: L = lanes(1.0);
-        for ((t, rate), &density) in (self.first..).zip(self.rates).zip(self.density) {
-            let [x, y, z, _, _, _, pressure, _] = self.records[t].map(L::splat);
-            let inverse_density: L = lanes(1.0 / density);
-            let (mut ax, mut ay, mut az) = (L::zero(), L::zero(), L::zero());
-            for index in self.list.of(t).chunks_exact(L::LANES) {
-                let [xj, yj, zj, _, _, _, pressure_j, volume] = L::gather(self.records, index);
-                let dx = L::coordinate_difference(x, xj) * unit;
-                let dy = L::coordinate_difference(y, yj) * unit;
-                let dz = L::coordinate_difference(z, zj) * unit;
-                let distance2 = dz.mul_add(dz, dy.mul_add(dy, dx * dx));
-                let m = (one - distance2.sqrt() * inverse_radius).max(L::zero());
-                let slope = m * m * (m * lanes(-20.0)) * norm * volume;
-                let factor = -((pressure + pressure_j) * slope * inverse_density);
-                ax = factor.mul_add(dx, ax);
-                ay = factor.mul_add(dy, ay);
-                az = factor.mul_add(dz, az);
+        let (records, list) = (self.records, self.list);
+        let end = self.first + self.rates.len();
+        for (number, targets) in list.clusters().within(self.first..end) {
+            for start in targets.clone().step_by(L::LANES) {
+                let own = start - self.first..targets.end.min(start + L::LANES) - self.first;
+                let (words, _) = cluster::<L>(records, &self.density[own.clone()], start);
+                let [x, y, z, _, _, _, pressure, _] = words;
+                let (mut ax, mut ay, mut az) = (L::zero(), L::zero(), L::zero());
+                for &j in list.sources(number) {
+                    let [xj, yj, zj, _, _, _, pressure_j, weight] =
+                        records[j as usize].map(L::splat);
+                    let dx = L::coordinate_difference(x, xj);
+                    let dy = L::coordinate_difference(y, yj);
+                    let dz = L::coordinate_difference(z, zj);
+                    let distance2 = dz.mul_add(dz, dy.mul_add(dy, dx * dx));
+                    let m = (one - distance2.sqrt() * to_q).max(L::zero());
+                    let factor = (-pressure - pressure_j) * (m * m * m * weight);
+                    ax = factor.mul_add(dx, ax);
+                    ay = factor.mul_add(dy, ay);
+                    az = factor.mul_add(dz, az);
+                }
+                let sums = [ax, ay, az].map(numbers);
+                let rates = self.rates[own.clone()].iter_mut().zip(&self.density[own]);
+                for (l, (rate, density)) in rates.enumerate() {
+                    *rate = Acceleration([0, 1, 2].map(|k| sums[k][l] / density));
+                }
             }
-            *rate = Acceleration([ax, ay, az].map(|a| a.sum().to_f64()));
         }
     }
 }
@@ -157,7 +192,7 @@ mod tests {
     fn same_bits<S: Real>() {
         let case = SweepCase::<S>::new(1000, 2.63, 0.1);
         let terms = density_terms(case.scale.support_radius);
-        let (strength, gradient) = (terms.1.strength, terms.1.hydrostatic_gradient);
+        let (strength, gradient) = (terms.strength, terms.hydrostatic_gradient);
         assert_eq!(density_rates(&case, strength, gradient), case.density_rates(terms));
         assert_eq!(accelerations(&case), case.accelerations(inviscid_force_terms()));
     }

@@ -11,7 +11,7 @@ use sph_solver::simulation::Simulation;
 use sph_solver::state::{FLUID, State};
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    ArtificialViscosity, Continuity, HydrostaticDiffusion, OneSidedRiemannWall, SymmetricPressure,
+    ArtificialViscosity, Continuity, DeltaContinuity, OneSidedRiemannWall, SymmetricPressure,
 };
 use sph_solver::timestep::StepLimits;
 
@@ -24,7 +24,7 @@ const COLUMN: [f64; 3] = [0.4, 0.67, 0.3];
 
 /// Terms of the dam break: fluid and walls in both passes.
 pub type BoxTerms = Terms<
-    (Continuity, HydrostaticDiffusion<3>),
+    DeltaContinuity<3>,
     (SymmetricPressure, ArtificialViscosity),
     Continuity,
     OneSidedRiemannWall<3>,
@@ -79,13 +79,10 @@ impl DamBreak {
         let model = self.model();
         let (h, c0) = (model.limits.smoothing_length, model.limits.sound_speed);
         Terms {
-            fluid_density: (
-                Continuity,
-                HydrostaticDiffusion {
-                    strength: 0.1 * h * c0,
-                    hydrostatic_gradient: model.gravity.map(|g| g * DENSITY / (c0 * c0)),
-                },
-            ),
+            fluid_density: DeltaContinuity {
+                strength: 0.1 * h * c0,
+                hydrostatic_gradient: model.gravity.map(|g| g * DENSITY / (c0 * c0)),
+            },
             fluid_force: (
                 SymmetricPressure,
                 ArtificialViscosity { strength: 0.1 * h * c0 * DENSITY, softening: 0.01 * h * h },
@@ -162,7 +159,8 @@ mod tests {
         }
         let fluid = simulation.rank().fluid.owned();
         assert_eq!(fluid, 8 * 13 * 6);
-        let front = simulation.state().position[..fluid].iter().map(|x| x[0]).fold(0.0, f64::max);
+        let front =
+            simulation.rank().state.position[..fluid].iter().map(|x| x[0]).fold(0.0, f64::max);
         assert!(front > COLUMN[0], "{front}");
     }
 

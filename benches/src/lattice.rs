@@ -1,6 +1,6 @@
 //! A jittered lattice: the disordered but even arrangement that particles of a fluid settle into.
 
-use sph_neighbors::{CellList, Grid};
+use sph_neighbors::{CellList, ColumnOrder, Grid};
 
 /// Pseudo-random numbers, the same in every run (Marsaglia 2003, xorshift).
 #[derive(Debug, Clone)]
@@ -56,7 +56,22 @@ impl Lattice {
         self.ids.is_empty()
     }
 
-    /// The same particles sorted by cell and id, as the solver stores them, with that grid.
+    /// The same particles in the order in which the solver stores them. Its columns are not aligned
+    /// with the lattice, which would make clusters more compact than those of a flow.
+    #[must_use]
+    pub fn in_columns(self) -> Self {
+        let order = ColumnOrder::new([0.37 * self.spacing; 3], self.spacing);
+        let order = order.expect("a positive spacing");
+        let mut sorted: Vec<u32> = (0..self.len() as u32).collect();
+        sorted.sort_by_cached_key(|&i| (order.key(&self.positions[i as usize]), i));
+        Self {
+            spacing: self.spacing,
+            positions: sorted.iter().map(|&i| self.positions[i as usize]).collect(),
+            ids: sorted.iter().map(|&i| self.ids[i as usize]).collect(),
+        }
+    }
+
+    /// The same particles sorted by cell and id, with that grid.
     ///
     /// # Panics
     /// If `cell_size` is not positive.

@@ -3,17 +3,17 @@
 use crate::{Lattice, Noise};
 use rayon::prelude::*;
 use sph_kernels::{Real, WendlandC2};
-use sph_neighbors::{CellList, NeighborList};
+use sph_neighbors::{CellList, ClusterList, Clusters, Grid};
 use sph_solver::records::{Encoder, Record, record};
 use sph_solver::sweep::{Neighbors, PairScale, sweep};
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    Acceleration, ArtificialViscosity, Continuity, Deviation, HydrostaticDiffusion, PairTerm,
-    Pressure, Quantity, SymmetricPressure,
+    Acceleration, ArtificialViscosity, DeltaContinuity, Deviation, PairTerm, Pressure, Quantity,
+    SymmetricPressure,
 };
 
 /// Density pass of δ-SPH.
-pub type DensityTerms = (Continuity, HydrostaticDiffusion<3>);
+pub type DensityTerms = DeltaContinuity<3>;
 /// Force pass of δ-SPH with artificial viscosity.
 pub type ForceTerms = (SymmetricPressure, ArtificialViscosity);
 
@@ -26,8 +26,7 @@ const GRAIN: usize = 256;
 pub fn density_terms(support_radius: f64) -> DensityTerms {
     let strength = 0.1 * 0.5 * support_radius * SOUND_SPEED;
     let gradient = -9.81 * DENSITY / (SOUND_SPEED * SOUND_SPEED);
-    let diffusion = HydrostaticDiffusion { strength, hydrostatic_gradient: [0.0, 0.0, gradient] };
-    (Continuity, diffusion)
+    DeltaContinuity { strength, hydrostatic_gradient: [0.0, 0.0, gradient] }
 }
 
 /// Terms of the force pass for a support radius.
@@ -54,10 +53,10 @@ pub struct SweepCase<S> {
     /// Densities, kg/m³.
     pub density: Vec<f64>,
     /// Neighbours within support radius and skin.
-    pub list: NeighborList,
+    pub list: ClusterList,
     /// Number of list entries within the support radius.
     pub true_pairs: u64,
-    none: NeighborList,
+    none: ClusterList,
 }
 
 impl<S: Real> SweepCase<S> {
@@ -69,11 +68,14 @@ impl<S: Real> SweepCase<S> {
         let lattice = Lattice::cube(count);
         let radius = support * lattice.spacing;
         let reach = radius * (1.0 + skin);
-        let (lattice, grid) = lattice.sorted(reach);
+        let lattice = lattice.in_columns();
+        let grid = Grid::new([0.0; 3], reach).expect("a positive cell size");
         let cells = CellList::build(&grid, &lattice.positions, &lattice.ids);
-        let list = NeighborList::build(&cells, &lattice.positions, |t| t as u32, reach, 8);
-        let true_pairs = list.pairs_within(&lattice.positions, &lattice.positions, radius);
-        let encoder = Encoder::new(radius, 3);
+        let mut list = ClusterList::default();
+        let clusters = Clusters::new(lattice.len(), &[]);
+        list.rebuild(&clusters, &cells, &lattice.positions, true, reach);
+        let true_pairs = list.pairs_within(&lattice.positions, &lattice.positions, true, radius);
+        let encoder = Encoder::new::<WendlandC2>(radius, 3);
         let mut noise = Noise::default();
         let mut case = Self {
             scale: PairScale { unit: encoder.unit(), support_radius: radius },
@@ -82,17 +84,17 @@ impl<S: Real> SweepCase<S> {
             density: Vec::with_capacity(lattice.len()),
             list,
             true_pairs,
-            none: NeighborList::default(),
+            none: ClusterList::default(),
         };
         for x in &lattice.positions {
             let velocity: [f64; 3] = std::array::from_fn(|_| noise.symmetric());
             let deviation = noise.symmetric();
             let density = DENSITY + deviation;
-            let volume = encoder.volume(lattice.spacing.powi(3) * DENSITY / density);
+            let weight = encoder.weight(lattice.spacing.powi(3) * DENSITY / density);
             let motion = encoder.motion(x, &velocity);
             let pressure = SOUND_SPEED * SOUND_SPEED * deviation;
-            case.deviation.push(record(motion, S::from_f64(deviation), volume));
-            case.pressure.push(record(motion, S::from_f64(pressure), volume));
+            case.deviation.push(record(motion, S::from_f64(deviation), weight));
+            case.pressure.push(record(motion, S::from_f64(pressure), weight));
             case.density.push(density);
         }
         case
@@ -153,9 +155,13 @@ impl<S: Real> SweepCase<S> {
     ) {
         let walls: Neighbors<'_, S, ()> = Neighbors { records: &[], list: &self.none, terms: () };
         let sources = (Neighbors { records, list: &self.list, terms }, walls);
+        let clusters = self.list.clusters();
         let task = |(k, (rates, density)): (usize, (&mut [Q::Rate<3>], &[f64]))| {
             let first = k * GRAIN;
-            sweep::<3, Q, WendlandC2, S, _>(first, records, density, self.scale, &sources, rates);
+            let scale = self.scale;
+            sweep::<3, Q, WendlandC2, S, _>(
+                clusters, first, records, density, scale, &sources, rates,
+            );
         };
         match team {
             None => {

@@ -12,7 +12,7 @@ use sph_solver::simulation::Simulation;
 use sph_solver::state::{FLUID, State};
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    ArtificialViscosity, Continuity, HydrostaticDiffusion, OneSidedRiemannWall, SymmetricPressure,
+    ArtificialViscosity, Continuity, DeltaContinuity, OneSidedRiemannWall, SymmetricPressure,
 };
 use sph_solver::timestep::StepLimits;
 
@@ -60,13 +60,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 
     let physics = Terms {
-        fluid_density: (
-            Continuity,
-            HydrostaticDiffusion {
-                strength: 0.1 * h * sound_speed,
-                hydrostatic_gradient: gravity.map(|g| g * density0 / (sound_speed * sound_speed)),
-            },
-        ),
+        fluid_density: DeltaContinuity {
+            strength: 0.1 * h * sound_speed,
+            hydrostatic_gradient: gravity.map(|g| g * density0 / (sound_speed * sound_speed)),
+        },
         fluid_force: (
             SymmetricPressure,
             ArtificialViscosity {

@@ -22,6 +22,7 @@ use crate::team::Team;
 use bytemuck::Pod;
 use sph_decomp::{CommError, Communicator, Exposed, Halo, HaloPlan, Parts};
 use sph_kernels::Real;
+use sph_neighbors::CLUSTER;
 
 /// Pieces of the local particles between which messages are polled.
 const POLLS: usize = 16;
@@ -55,11 +56,14 @@ pub struct Extremes {
     pub acceleration2: f64,
     /// 1 when a particle has left the range of usable numbers, else 0.
     pub fault: f64,
+    /// Largest velocity along each axis and against it, m/s; 0 at least, because walls rest.
+    pub velocity: [[f64; 2]; 3],
 }
 
 impl Extremes {
     /// Of no particle.
-    pub const NONE: Self = Self { speed2: 0.0, acceleration2: 0.0, fault: 0.0 };
+    pub const NONE: Self =
+        Self { speed2: 0.0, acceleration2: 0.0, fault: 0.0, velocity: [[0.0; 2]; 3] };
 
     /// Of both sets of particles.
     #[must_use]
@@ -68,17 +72,31 @@ impl Extremes {
             speed2: self.speed2.max(other.speed2),
             acceleration2: self.acceleration2.max(other.acceleration2),
             fault: self.fault.max(other.fault),
+            velocity: std::array::from_fn(|axis| {
+                std::array::from_fn(|way| self.velocity[axis][way].max(other.velocity[axis][way]))
+            }),
         }
     }
 
+    /// [`velocity`](Self::velocity) of one particle.
+    #[inline]
+    pub fn ways<const D: usize>(velocity: &[f64; D]) -> [[f64; 2]; 3] {
+        std::array::from_fn(|axis| match velocity.get(axis) {
+            Some(&v) => [v.max(0.0), (-v).max(0.0)],
+            None => [0.0; 2],
+        })
+    }
+
     /// As numbers for an all-reduce by maximum.
-    pub fn to_array(self) -> [f64; 3] {
-        [self.speed2, self.acceleration2, self.fault]
+    pub fn to_array(self) -> [f64; 9] {
+        let Self { speed2, acceleration2, fault, velocity: [x, y, z] } = self;
+        [speed2, acceleration2, fault, x[0], x[1], y[0], y[1], z[0], z[1]]
     }
 
     /// Back from [`to_array`](Self::to_array).
-    pub fn from_array([speed2, acceleration2, fault]: [f64; 3]) -> Self {
-        Self { speed2, acceleration2, fault }
+    pub fn from_array(numbers: [f64; 9]) -> Self {
+        let [speed2, acceleration2, fault, a, b, c, d, e, f] = numbers;
+        Self { speed2, acceleration2, fault, velocity: [[a, b], [c, d], [e, f]] }
     }
 }
 
@@ -138,7 +156,8 @@ pub fn lio_pass<const D: usize, S: Real, P: Pass<D, S>>(
         |progress| {
             // 5. and 6. Local particles: they cannot see an outer record.
             let visible = &old_now[..parts.owned()];
-            let piece = local.len().div_ceil(POLLS).max(1);
+            // Whole clusters, so that none is computed twice.
+            let piece = local.len().div_ceil(POLLS).max(1).next_multiple_of(CLUSTER);
             for mut piece in local.pieces(piece) {
                 of_local = of_local.max(team.advance(pass, visible, &mut piece));
                 progress.poll();

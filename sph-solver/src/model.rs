@@ -4,6 +4,7 @@ use crate::eos::EquationOfState;
 use crate::records::Encoder;
 use crate::sweep::PairScale;
 use crate::timestep::StepLimits;
+use sph_kernels::Kernel;
 
 /// Constants of a run in SI units; derived from the scene once and never changed.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,14 +40,14 @@ pub enum OnLost {
 const DIVERGED_MACH: f64 = 3.0;
 
 impl<const D: usize> Model<D> {
-    /// Writes records for this run.
-    pub fn encoder(&self) -> Encoder {
-        Encoder::new(self.support_radius, D)
+    /// Writes records for this run with a kernel.
+    pub fn encoder<K: Kernel>(&self) -> Encoder {
+        Encoder::new::<K>(self.support_radius, D)
     }
 
     /// Scale of the pairs.
-    pub fn scale(&self) -> PairScale {
-        PairScale { unit: self.encoder().unit(), support_radius: self.support_radius }
+    pub fn scale<K: Kernel>(&self) -> PairScale {
+        PairScale { unit: self.encoder::<K>().unit(), support_radius: self.support_radius }
     }
 
     /// Speed above which the run has diverged, m/s.

@@ -110,11 +110,13 @@ where
         state: State<D>,
         clock: Option<Clock>,
     ) -> Result<Self, RunError> {
+        let start = at_start(comm, &model, &state)?;
         let clock = match clock {
-            Some(clock) => clock,
-            None => {
-                Clock { step: 0, time: 0.0, dt: 0.0, extremes: at_start(comm, &model, &state)? }
+            // The velocities of a checkpoint are those of the last force pass.
+            Some(clock) => {
+                Clock { extremes: Extremes { velocity: start.velocity, ..clock.extremes }, ..clock }
             }
+            None => Clock { step: 0, time: 0.0, dt: 0.0, extremes: start },
         };
         let skin = Skin::new(model.skin);
         Ok(Self {
@@ -151,10 +153,10 @@ where
         Ok(Clock { extremes, ..self.clock })
     }
 
-    /// State of the particles of this rank between two steps: positions of the present time,
+    /// A copy of the state of the particles of this rank between two steps, fluid first: positions of the present time,
     /// velocities half a step behind it, densities of the time before.
-    pub fn state(&self) -> &State<D> {
-        &self.rank.state
+    pub fn state(&self) -> State<D> {
+        self.rank.whole_state()
     }
 
     /// Time of the present positions, s: the next step ends there.
@@ -246,8 +248,9 @@ where
         // A particle without a usable position is a fault, not one that has left the domain.
         self.clock()?;
         let rebalance = self.counters.rebuilds.is_multiple_of(REBUILDS_PER_BALANCE);
-        let gone =
-            self.rank.rebuild(self.comm, &self.team, &self.model, P::has_walls(), rebalance)?;
+        let encoder = self.model.encoder::<K>();
+        let (comm, team, model) = (self.comm, &self.team, &self.model);
+        let gone = self.rank.rebuild(comm, team, model, &encoder, P::has_walls(), rebalance)?;
         let time = self.clock.time;
         self.lost.extend(gone.iter().map(|&(id, position)| Lost { id, position, time }));
         if self.model.on_lost == OnLost::Stop {
@@ -328,9 +331,8 @@ where
     /// The next step, and whether it uses up the skin. `extremes` are those of the last force pass:
     /// one step old, so that their reduction could hide behind the density pass.
     fn choose_step(&mut self, extremes: Extremes) -> Result<f64, RunError> {
-        let speed = extremes.speed2.sqrt();
         let acceleration = extremes.acceleration2.sqrt();
-        self.skin.moved(self.clock.dt, speed);
+        self.skin.moved(self.clock.dt, &extremes);
         let dt = self.model.limits.step(extremes);
         let calm = self.model.limits.step(Extremes::NONE);
         if dt.is_nan() || dt <= SMALLEST_STEP * calm {
@@ -343,8 +345,8 @@ where
         self.counters.stale_steps += u64::from(self.skin.exceeded());
         // The kick before the coming drift is not known yet; twice the last one bounds it but in
         // an impact, where a stale step is counted and harmless: the kernel's slope vanishes at R.
-        let ahead = speed + acceleration * (self.clock.dt + dt);
-        self.lists_due = self.skin.would_exceed(dt, ahead);
+        let kick = acceleration * (self.clock.dt + dt);
+        self.lists_due = self.skin.would_exceed(dt, &extremes, kick);
         Ok(dt)
     }
 
@@ -401,9 +403,16 @@ fn at_start<const D: usize>(
     state: &State<D>,
 ) -> Result<Extremes, RunError> {
     let square = |v: &[f64; D]| v.iter().map(|c| c * c).sum::<f64>();
-    let mut speed2 = [state.velocity.iter().map(square).fold(0.0, f64::max)];
-    comm.max_f64(&mut speed2)?;
-    Ok(Extremes { speed2: speed2[0], acceleration2: square(&model.gravity), fault: 0.0 })
+    let of = |v: &[f64; D]| Extremes {
+        speed2: square(v),
+        velocity: Extremes::ways(v),
+        ..Extremes::NONE
+    };
+    let own = state.velocity.iter().map(of).fold(Extremes::NONE, Extremes::max);
+    let mut maxima = own.to_array();
+    comm.max_f64(&mut maxima)?;
+    let all = Extremes::from_array(maxima);
+    Ok(Extremes { acceleration2: square(&model.gravity), ..all })
 }
 
 /// The particle with the lowest id over all ranks, from the one that each rank names.

@@ -9,7 +9,7 @@
 //! rebuild costs no pair loop.
 
 use crate::model::Model;
-use sph_neighbors::NeighborList;
+use sph_neighbors::ClusterList;
 use std::f64::consts::PI;
 
 /// A flat surface fills one half, a right-angled edge of fluid one quarter.
@@ -18,13 +18,12 @@ const FILLED: f64 = 0.3;
 /// Marks the spray among the targets of the two lists.
 pub fn mark_spray<const D: usize>(
     model: &Model<D>,
-    near_fluid: &NeighborList,
-    near_walls: &NeighborList,
+    near_fluid: &ClusterList,
+    near_walls: &ClusterList,
 ) -> Vec<bool> {
     let ball = if D == 2 { PI } else { 4.0 / 3.0 * PI };
     let places = ball * (model.reach() / model.spacing).powi(D as i32);
-    let walls = |t| if near_walls.len() > t { near_walls.count(t) } else { 0 };
-    (0..near_fluid.len())
-        .map(|t| (near_fluid.count(t) as f64) < FILLED * (places - walls(t) as f64))
-        .collect()
+    let walls = near_walls.counts().chain(std::iter::repeat(0));
+    let filled = |(fluid, walls)| (fluid as f64) < FILLED * (places - walls as f64);
+    near_fluid.counts().zip(walls).map(filled).collect()
 }

@@ -5,7 +5,7 @@ use sph_decomp::Columns;
 /// Kind of the fluid particles; solid k of the scene has kind 1 + k.
 pub const FLUID: u16 = 0;
 
-/// Structure of arrays over owned particles: fluid first, then solids.
+/// Structure of arrays over particles.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct State<const D: usize> {
     /// Global id.
@@ -48,6 +48,16 @@ impl<const D: usize> State<D> {
     /// Keeps the particles named by `index`, in that order.
     pub fn keep(&mut self, index: &[u32]) {
         self.columns().permute(index);
+    }
+
+    /// Adds copies of other particles.
+    pub fn append(&mut self, other: &Self) {
+        self.id.extend_from_slice(&other.id);
+        self.kind.extend_from_slice(&other.kind);
+        self.mass.extend_from_slice(&other.mass);
+        self.density.extend_from_slice(&other.density);
+        self.position.extend_from_slice(&other.position);
+        self.velocity.extend_from_slice(&other.velocity);
     }
 
     /// The columns themselves, ids first.

@@ -1,15 +1,19 @@
-//! The sweep: sums pair terms over the neighbours of every target, eight lanes at a time.
+//! The sweep: sums pair terms over the neighbours of every target, one target a lane.
 //!
-//! One function, [`sweep`], compiled for a dimension, a kernel, a scalar and a tuple of terms. Sums
-//! run in list order and a lane is a position in the list, so the result depends neither on threads
-//! nor on ranks.
+//! One function, [`sweep`], compiled for a dimension, a kernel, a scalar and a tuple of terms. The
+//! targets of a cluster lie in the lanes; each source near the cluster is read once, as one record
+//! that is broadcast to all lanes, and adds to every target. Sources beyond the support of a target
+//! add zero to it, because the kernel's slope is zero there. So each target adds its neighbours one
+//! after the other in canonical order, and its sums depend neither on threads, nor on ranks, nor on
+//! the width of the lanes, nor on who shares its cluster.
 
-use crate::records::{QUANTITY, Record, VOLUME, velocity_word};
-use crate::terms::{Pair, PairTerm, Quantity, Source, Sum, Target, lanes};
+use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
+use crate::terms::{Pair, PairTerm, Quantity, Source, Target, dot, lanes};
 use sph_kernels::{Kernel, Lanes, Real, Vectorized};
-use sph_neighbors::NeighborList;
+use sph_neighbors::{CLUSTER, ClusterList, Clusters};
 use std::array::from_fn;
 use std::marker::PhantomData;
+use std::ops::Range;
 
 /// Kernel and scale of the pairs.
 #[derive(Debug, Clone, Copy)]
@@ -25,22 +29,22 @@ pub struct PairScale {
 pub struct Neighbors<'a, S, T> {
     /// Records that the list points into.
     pub records: &'a [Record<S>],
-    /// A list per target.
-    pub list: &'a NeighborList,
+    /// A list per cluster of targets.
+    pub list: &'a ClusterList,
     /// Terms of this group.
     pub terms: T,
 }
 
 /// Groups of neighbours: one, or a pair of groups whose contributions add up.
 pub trait Sources<const D: usize, Q: Quantity, S: Real>: Sync {
-    /// Adds the contributions to target `t`.
+    /// Adds the contributions to the targets of a cluster.
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
-        t: usize,
+        cluster: usize,
         position: &[L; D],
         target: &Target<D, L>,
         scale: &PairScale,
-        sum: &mut Sum<D, L>,
+        sum: &mut Q::Sum<D, L>,
     );
 }
 
@@ -54,14 +58,14 @@ where
     #[inline(always)]
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
-        t: usize,
+        cluster: usize,
         position: &[L; D],
         target: &Target<D, L>,
         scale: &PairScale,
-        sum: &mut Sum<D, L>,
+        sum: &mut Q::Sum<D, L>,
     ) {
-        self.0.add::<K, L>(t, position, target, scale, sum);
-        self.1.add::<K, L>(t, position, target, scale, sum);
+        self.0.add::<K, L>(cluster, position, target, scale, sum);
+        self.1.add::<K, L>(cluster, position, target, scale, sum);
     }
 }
 
@@ -74,44 +78,46 @@ where
     #[inline(always)]
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
-        t: usize,
+        cluster: usize,
         position: &[L; D],
         target: &Target<D, L>,
         scale: &PairScale,
-        sum: &mut Sum<D, L>,
+        sum: &mut Q::Sum<D, L>,
     ) {
         if T::EMPTY {
             return;
         }
-        let radius = scale.support_radius;
-        let unit: L = lanes(scale.unit);
-        let inverse_radius: L = lanes(1.0 / radius);
-        // ∇W V = norm/R^(D+2) · w'(q)/q · r_ij · V, with R^D taken by the volume word.
-        let norm: L = lanes(K::norm(D) / (radius * radius));
-        for index in self.list.of(t).chunks_exact(L::LANES) {
-            let words = L::gather(self.records, index);
+        let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
+        let to_q: L = lanes(scale.unit / scale.support_radius);
+        // Copies, so that the constants of the terms are spread over the lanes once and not per pair.
+        let Self { records, list, terms } = *self;
+        for &j in list.sources(cluster) {
+            let record = &records[j as usize];
             let offset: [L; D] =
-                from_fn(|k| L::coordinate_difference(position[k], words[k]) * unit);
-            let distance2 = crate::terms::dot(&offset, &offset);
+                from_fn(|k| L::coordinate_difference(position[k], L::splat(record[k])));
+            let distance2 = dot(&offset, &offset);
             let distance = distance2.sqrt();
-            let slope_volume = K::slope(distance * inverse_radius) * norm * words[VOLUME];
+            let weight = K::slope_shape(distance * to_q) * L::splat(record[WEIGHT]);
             let source = Source {
-                quantity: words[QUANTITY],
-                approach: from_fn(|k| target.velocity[k] - words[velocity_word(k)]),
+                quantity: L::splat(record[QUANTITY]),
+                velocity: from_fn(|k| L::splat(record[velocity_word(k)])),
             };
-            let pair = Pair { offset, distance2, distance, slope_volume };
-            self.terms.add(target, &source, &pair, sum);
+            let pair = Pair { offset, distance2, distance, weight, unit, per_unit };
+            Q::add(sum, terms.coefficient(target, &source, &pair), &pair);
         }
     }
 }
 
 /// Computes `rates[k]` for target `first + k`.
 ///
-/// * `records`: records of the targets, indexed like the lists.
+/// * `clusters`: those of the lists in `sources`. Most efficient when the range of targets begins
+///   and ends with a cluster.
+/// * `records`: records of the targets, indexed like the clusters.
 /// * `density`: kg/m³ of the targets, in order.
 /// * `sources`: groups of neighbours with their terms, usually `(fluid, walls)`. A group whose terms
 ///   are `()` leaves no instruction.
 pub fn sweep<const D: usize, Q, K, S, N>(
+    clusters: &Clusters,
     first: usize,
     records: &[Record<S>],
     density: &[f64],
@@ -126,10 +132,20 @@ pub fn sweep<const D: usize, Q, K, S, N>(
 {
     assert_eq!(density.len(), rates.len(), "one density per target");
     let kernel = PhantomData::<K>;
-    S::dispatch(Chunk::<D, Q, K, S, N> { first, records, density, scale, sources, rates, kernel });
+    S::dispatch(Chunk::<D, Q, K, S, N> {
+        clusters,
+        first,
+        records,
+        density,
+        scale,
+        sources,
+        rates,
+        kernel,
+    });
 }
 
 struct Chunk<'a, const D: usize, Q: Quantity, K, S, N> {
+    clusters: &'a Clusters,
     first: usize,
     records: &'a [Record<S>],
     density: &'a [f64],
@@ -150,22 +166,46 @@ where
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Lanes<Scalar = S>>(self) {
-        for ((t, rate), &density) in (self.first..).zip(self.rates).zip(self.density) {
-            let me = &self.records[t];
-            let position: [L; D] = from_fn(|k| L::splat(me[k]));
-            let target = Target {
-                velocity: from_fn(|k| L::splat(me[velocity_word(k)])),
-                quantity: L::splat(me[QUANTITY]),
-                density: lanes(density),
-                inverse_density: lanes(1.0 / density),
-            };
-            let mut sum = Sum::zero();
-            self.sources.add::<K, L>(t, &position, &target, &self.scale, &mut sum);
-            *rate = Q::rate(
-                sum.density.sum().to_f64(),
-                from_fn(|k| sum.acceleration[k].sum().to_f64()),
-            );
+    fn run<L: Lanes<Scalar = S>>(mut self) {
+        const { assert!(CLUSTER.is_multiple_of(L::LANES)) };
+        let end = self.first + self.rates.len();
+        for (cluster, targets) in self.clusters.within(self.first..end) {
+            for start in targets.clone().step_by(L::LANES) {
+                self.lanes::<L>(cluster, start..targets.end.min(start + L::LANES));
+            }
         }
+    }
+}
+
+impl<const D: usize, Q, K, S, N> Chunk<'_, D, Q, K, S, N>
+where
+    Q: Quantity,
+    K: Kernel,
+    S: Real,
+    N: Sources<D, Q, S>,
+{
+    /// The rates of up to so many targets as there are lanes.
+    #[inline(always)]
+    fn lanes<L: Lanes<Scalar = S>>(&mut self, cluster: usize, targets: Range<usize>) {
+        let count = targets.len();
+        // Lanes without a target repeat the last one.
+        let index: [u32; CLUSTER] = from_fn(|l| (targets.start + l.min(count - 1)) as u32);
+        let words = L::gather(self.records, &index);
+        let own = targets.start - self.first..targets.end - self.first;
+        let density = &self.density[own.clone()];
+        let of_lanes = |f: fn(f64) -> f64| -> L {
+            let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f(density[l.min(count - 1)])));
+            L::load(&all)
+        };
+        let target = Target {
+            velocity: from_fn(|k| words[velocity_word(k)]),
+            quantity: words[QUANTITY],
+            density: of_lanes(|density| density),
+            inverse_density: of_lanes(|density| 1.0 / density),
+        };
+        let position: [L; D] = from_fn(|k| words[k]);
+        let mut sum = Q::zero();
+        self.sources.add::<K, L>(cluster, &position, &target, &self.scale, &mut sum);
+        Q::rates(&sum, density, &mut self.rates[own]);
     }
 }

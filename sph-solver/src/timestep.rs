@@ -35,13 +35,19 @@ const LONGEST_LIFE: u32 = 100;
 
 /// How much of the Verlet skin has been used up since the lists were built.
 ///
-/// Lists hold all pairs closer than support + skin, so they are complete as long as no particle has
-/// moved farther than skin/2. The sum over the steps of dt times the largest speed bounds every
-/// displacement; it needs no memory per particle and is the same on every rank.
+/// Lists hold all pairs closer than support + skin, so they are complete as long as no two particles
+/// have moved farther than the skin relative to each other. Two bounds of that, of which the smaller
+/// one counts: twice the sum over the steps of dt times the largest speed, and the diagonal of the
+/// box that holds all displacements, walls at rest included, from the sums of dt times the largest
+/// velocities along each axis and against it. The second one lets a flow go its way as a whole. Both
+/// need no memory per particle and are the same on every rank.
 #[derive(Debug, Clone, Copy)]
 pub struct Skin {
-    allowance: f64,
-    used: f64,
+    width: f64,
+    /// Largest displacement of one particle.
+    path: f64,
+    /// Edges of the box of all displacements.
+    spread: [f64; 3],
     steps: u32,
     fresh: bool,
 }
@@ -49,21 +55,22 @@ pub struct Skin {
 impl Skin {
     /// For lists with a skin of `width` (m).
     pub fn new(width: f64) -> Self {
-        Self { allowance: 0.5 * width, used: 0.0, steps: 0, fresh: true }
+        Self { width, path: 0.0, spread: [0.0; 3], steps: 0, fresh: true }
     }
 
     /// The lists have just been built for the present positions.
     pub fn renew(&mut self) {
-        self.used = 0.0;
+        self.path = 0.0;
+        self.spread = [0.0; 3];
         self.steps = 0;
         self.fresh = true;
     }
 
-    /// The present positions were reached by a drift of `dt` (s) with the largest speed `speed`
-    /// (m/s). Called once a step; the drift that ended just before a rebuild does not count.
-    pub fn moved(&mut self, dt: f64, speed: f64) {
+    /// The present positions were reached by a drift of `dt` (s) with velocities within these
+    /// extremes. Called once a step; the drift that ended just before a rebuild does not count.
+    pub fn moved(&mut self, dt: f64, extremes: &Extremes) {
         if !self.fresh {
-            self.used += dt * speed;
+            self.drift(dt, extremes, 0.0);
         }
         self.steps += 1;
         self.fresh = false;
@@ -71,12 +78,22 @@ impl Skin {
 
     /// Whether the present positions are farther apart than the lists allow for.
     pub fn exceeded(&self) -> bool {
-        self.used > self.allowance
+        let diagonal = self.spread.iter().map(|edge| edge * edge).sum::<f64>().sqrt();
+        (2.0 * self.path).min(diagonal) > self.width
     }
 
-    /// Whether a further drift of `dt` at `speed` would ask for new lists.
-    pub fn would_exceed(&self, dt: f64, speed: f64) -> bool {
-        self.steps >= LONGEST_LIFE || self.used + dt * speed > self.allowance
+    /// Whether a further drift of `dt` with velocities within these extremes, each changed by up to
+    /// `kick` (m/s), would ask for new lists.
+    pub fn would_exceed(mut self, dt: f64, extremes: &Extremes, kick: f64) -> bool {
+        self.drift(dt, extremes, kick);
+        self.steps >= LONGEST_LIFE || self.exceeded()
+    }
+
+    fn drift(&mut self, dt: f64, extremes: &Extremes, kick: f64) {
+        self.path += dt * (extremes.speed2.sqrt() + kick);
+        for (edge, ways) in self.spread.iter_mut().zip(extremes.velocity) {
+            *edge += dt * (ways[0] + ways[1] + 2.0 * kick);
+        }
     }
 }
 
@@ -93,7 +110,7 @@ mod tests {
 
     #[test]
     fn each_limit_can_be_the_smallest() {
-        let calm = Extremes { speed2: 1.0, acceleration2: 0.0, fault: 0.0 };
+        let calm = Extremes { speed2: 1.0, ..Extremes::NONE };
         assert!((LIMITS.step(calm) - 1e-3).abs() < 1e-15);
         let hit = Extremes { acceleration2: 1e10, ..calm };
         assert!((LIMITS.step(hit) - 0.25 * (0.03f64 / 1e5).sqrt()).abs() < 1e-15);
@@ -101,16 +118,49 @@ mod tests {
         assert!((syrup.step(calm) - 0.125 * 9e-4).abs() < 1e-15);
     }
 
+    fn flowing<const D: usize>(velocities: &[[f64; D]]) -> Extremes {
+        let of = |v: &[f64; D]| Extremes {
+            speed2: v.iter().map(|c| c * c).sum(),
+            velocity: Extremes::ways(v),
+            ..Extremes::NONE
+        };
+        velocities.iter().map(of).fold(Extremes::NONE, Extremes::max)
+    }
+
     #[test]
-    fn lists_last_until_half_the_skin_is_used() {
+    fn lists_last_until_particles_may_have_moved_a_skin_apart() {
         let mut skin = Skin::new(0.01);
-        skin.moved(1.0, 9.0);
-        skin.moved(1e-3, 4.0);
-        assert!(!skin.would_exceed(1e-3, 0.9));
-        assert!(skin.would_exceed(1e-3, 1.1));
-        skin.moved(1e-3, 1.1);
+        // Apart at up to 8 m/s.
+        let flow = flowing(&[[4.0, 0.0], [-4.0, 0.0]]);
+        skin.moved(1.0, &flow);
+        skin.moved(1e-3, &flow);
+        assert!(!skin.would_exceed(0.24e-3, &flow, 0.0));
+        assert!(skin.would_exceed(0.26e-3, &flow, 0.0));
+        assert!(skin.would_exceed(0.24e-3, &flow, 0.5));
+        skin.moved(0.26e-3, &flow);
         assert!(skin.exceeded());
         skin.renew();
+        assert!(!skin.exceeded());
+    }
+
+    #[test]
+    fn a_flow_in_one_direction_may_go_twice_as_far() {
+        // No two particles, and no particle and a wall, are more than 4 m/s apart.
+        let flow = flowing(&[[4.0], [1.0]]);
+        let mut skin = Skin::new(0.01);
+        skin.moved(1.0, &flow);
+        skin.moved(2e-3, &flow);
+        assert!(!skin.would_exceed(0.4e-3, &flow, 0.0));
+        assert!(skin.would_exceed(0.6e-3, &flow, 0.0));
+    }
+
+    #[test]
+    fn a_flow_in_all_directions_is_bounded_by_its_speed() {
+        let sides = [[3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]];
+        let all: Vec<[f64; 3]> = sides.iter().flat_map(|v| [*v, v.map(|c| -c)]).collect();
+        let mut skin = Skin::new(0.01);
+        skin.moved(1.0, &flowing(&all));
+        skin.moved(1.6e-3, &flowing(&all));
         assert!(!skin.exceeded());
     }
 
@@ -118,8 +168,8 @@ mod tests {
     fn a_tank_at_rest_still_rebuilds() {
         let mut skin = Skin::new(0.01);
         let mut steps = 0;
-        while !skin.would_exceed(1e-3, 0.0) {
-            skin.moved(1e-3, 0.0);
+        while !skin.would_exceed(1e-3, &Extremes::NONE, 0.0) {
+            skin.moved(1e-3, &Extremes::NONE);
             steps += 1;
         }
         assert_eq!(steps, LONGEST_LIFE);

@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let case = SweepCase::<f32>::new(particles, 2.63, 0.0);
     let radius = case.scale.support_radius;
     let terms = density_terms(radius);
-    let (strength, gradient) = (terms.1.strength, terms.1.hydrostatic_gradient);
+    let (strength, gradient) = (terms.strength, terms.hydrostatic_gradient);
     let pass = || match what.as_str() {
         "density" => drop(black_box(case.density_rates(terms))),
         "density-by-hand" => drop(black_box(by_hand::density_rates(&case, strength, gradient))),

@@ -2,7 +2,7 @@ use crate::block::Block;
 use crate::lio::{Extremes, Pass};
 use crate::model::Model;
 use crate::passes::Surroundings;
-use crate::records::{QUANTITY, Record, VOLUME, motion, record};
+use crate::records::{QUANTITY, Record, WEIGHT, motion, record};
 use crate::sweep::sweep;
 use crate::terms::{Deviation, PairTerm};
 use bytemuck::Pod;
@@ -33,16 +33,18 @@ where
     K: Kernel,
 {
     type Rate = f64;
-    /// Pressure, volume, density deviation.
+    /// Pressure, weight, density deviation.
     type Message = [S; 3];
 
     fn flux(&self, first: usize, old: &[Record<S>], density: &[f64], rates: &mut [f64]) {
         let sources = self.around.sources(old);
-        sweep::<D, Deviation, K, S, _>(first, old, density, self.model.scale(), &sources, rates);
+        let clusters = self.around.near_fluid.clusters();
+        let scale = self.model.scale::<K>();
+        sweep::<D, Deviation, K, S, _>(clusters, first, old, density, scale, &sources, rates);
     }
 
     fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, f64>) -> Extremes {
-        let (eos, encoder) = (&self.model.equation_of_state, self.model.encoder());
+        let (eos, encoder) = (&self.model.equation_of_state, self.model.encoder::<K>());
         let density0 = eos.density0();
         let mut fault = 0.0;
         let old = &old[block.first..][..block.len()];
@@ -59,21 +61,21 @@ where
             block.new[k] = record(
                 motion(old),
                 S::from_f64(eos.pressure(density)),
-                encoder.volume(block.mass[k] / density),
+                encoder.weight(block.mass[k] / density),
             );
         }
         Extremes { fault, ..Extremes::NONE }
     }
 
     fn message(&self, new: &Record<S>, density: f64) -> [S; 3] {
-        [new[QUANTITY], new[VOLUME], S::from_f64(density - self.model.equation_of_state.density0())]
+        [new[QUANTITY], new[WEIGHT], S::from_f64(density - self.model.equation_of_state.density0())]
     }
 
     fn receive(&self, message: &[S; 3], old: &mut Record<S>, new: &mut Record<S>) {
-        let [pressure, volume, deviation] = *message;
-        *new = record(motion(old), pressure, volume);
+        let [pressure, weight, deviation] = *message;
+        *new = record(motion(old), pressure, weight);
         // The force pass moves outer particles but does not change their density, so that what the
         // next density pass needs of it is entered now.
-        *old = record(motion(old), deviation, volume);
+        *old = record(motion(old), deviation, weight);
     }
 }

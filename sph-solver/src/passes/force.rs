@@ -2,7 +2,7 @@ use crate::block::Block;
 use crate::lio::{Extremes, Pass};
 use crate::model::Model;
 use crate::passes::Surroundings;
-use crate::records::{QUANTITY, Record, VOLUME, record};
+use crate::records::{QUANTITY, Record, WEIGHT, record};
 use crate::sweep::sweep;
 use crate::terms::{Acceleration, PairTerm, Pressure};
 use bytemuck::Pod;
@@ -49,12 +49,14 @@ where
         rates: &mut [Acceleration<D>],
     ) {
         let sources = self.around.sources(old);
-        sweep::<D, Pressure, K, S, _>(first, old, density, self.model.scale(), &sources, rates);
+        let clusters = self.around.near_fluid.clusters();
+        let scale = self.model.scale::<K>();
+        sweep::<D, Pressure, K, S, _>(clusters, first, old, density, scale, &sources, rates);
     }
 
     fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Acceleration<D>>) -> Extremes {
         let mut extremes = Extremes::NONE;
-        let (gravity, encoder) = (self.model.gravity, self.model.encoder());
+        let (gravity, encoder) = (self.model.gravity, self.model.encoder::<K>());
         let density0 = self.model.equation_of_state.density0();
         let limit2 = self.model.speed_limit().powi(2);
         let old = &old[block.first..][..block.len()];
@@ -68,13 +70,14 @@ where
             let acceleration2 = square::<D>(std::array::from_fn(|d| a[d] + gravity[d]));
             // Written so that NaN is a fault too: `max` alone would drop it.
             let fault = f64::from(!(speed2 <= limit2 && acceleration2 < f64::MAX));
-            extremes = extremes.max(Extremes { speed2, acceleration2, fault });
+            let ways = Extremes::ways(&velocity);
+            extremes = extremes.max(Extremes { speed2, acceleration2, fault, velocity: ways });
             block.velocity[k] = velocity;
             block.position[k] = position;
             block.new[k] = record(
                 encoder.motion(&position, &velocity),
                 S::from_f64(block.density[k] - density0),
-                old[VOLUME],
+                old[WEIGHT],
             );
         }
         extremes
@@ -85,7 +88,7 @@ where
     }
 
     fn receive(&self, message: &[S; 6], _: &mut Record<S>, new: &mut Record<S>) {
-        *new = record(*message, new[QUANTITY], new[VOLUME]);
+        *new = record(*message, new[QUANTITY], new[WEIGHT]);
     }
 }
 

@@ -22,19 +22,19 @@ pub use force::{ForcePass, kicked};
 
 use crate::records::Record;
 use crate::sweep::Neighbors;
-use sph_neighbors::NeighborList;
+use sph_neighbors::ClusterList;
 
 /// What surrounds the fluid particles of a rank, and the terms of a pass for it.
 #[derive(Debug, Clone, Copy)]
 pub struct Surroundings<'a, S, F, W> {
     /// Fluid neighbours of every owned fluid particle.
-    pub near_fluid: &'a NeighborList,
+    pub near_fluid: &'a ClusterList,
     /// Terms of fluid neighbours.
     pub fluid: F,
     /// Records of the wall particles. They do not change during a pass.
     pub walls: &'a [Record<S>],
     /// Wall neighbours of every owned fluid particle.
-    pub near_walls: &'a NeighborList,
+    pub near_walls: &'a ClusterList,
     /// Terms of wall neighbours.
     pub wall: W,
 }

@@ -1,6 +1,7 @@
 //! The particles of one rank in the layout that the passes work on.
 
 mod rebuild;
+mod solids;
 mod traveller;
 
 use crate::block::FluidColumns;
@@ -11,25 +12,27 @@ use crate::terms::Acceleration;
 use bytemuck::Pod;
 use sph_decomp::{Halo, HaloPlan, Orb, Parts};
 use sph_kernels::Real;
-use sph_neighbors::NeighborList;
+use sph_neighbors::{CellList, ClusterList};
 
 /// The particles of a rank.
 ///
-/// Owned particles are columns of [`State`]: fluid first, then solids, each `[local | inner]`.
-/// Records hold `[local | inner | outer]` of the fluid, twice because a pass reads one copy and
-/// writes the other, and the solids with a last record of volume 0 that pads lists.
+/// Owned particles are columns of [`State`]. Records hold `[local | inner | outer]` of the fluid,
+/// twice because a pass reads one copy and writes the other, and once all solids, owned or not, that
+/// the fluid of this rank can see.
 #[derive(Debug, Clone, Default)]
 pub struct Rank<const D: usize, S: Real> {
-    /// Owned particles.
+    /// Owned fluid particles.
     pub state: State<D>,
+    /// Owned solid particles. They are at rest.
+    pub solids: State<D>,
     /// Layout of the fluid.
     pub fluid: Parts,
     /// Layout of the solids.
     pub solid: Parts,
     /// Fluid neighbours of the owned fluid particles.
-    pub near_fluid: NeighborList,
+    pub near_fluid: ClusterList,
     /// Solid neighbours of the owned fluid particles.
-    pub near_walls: NeighborList,
+    pub near_walls: ClusterList,
     /// Which owned fluid particles are spray, see [`crate::spray`].
     pub spray: Vec<bool>,
     /// Acceleration of the owned fluid particles by pair forces (without gravity), m/s².
@@ -41,6 +44,12 @@ pub struct Rank<const D: usize, S: Real> {
     /// Records with pressures.
     pressure: Vec<Record<S>>,
     walls: Vec<Record<S>>,
+    /// Where they are; none before they are settled.
+    wall_cells: Option<CellList<D>>,
+    /// Where the fluid is, outer particles included.
+    cells: Option<CellList<D>>,
+    /// Lanes that were pairs, of all that were computed, when the fluid was last sorted.
+    compactness: f64,
     plan: HaloPlan,
     density_halo: Halo<[S; 3]>,
     force_halo: Halo<[S; 6]>,
@@ -50,9 +59,9 @@ pub struct Rank<const D: usize, S: Real> {
 /// What a pass needs of a rank, borrowed apart.
 pub struct Passing<'a, const D: usize, S> {
     /// Fluid neighbours.
-    pub near_fluid: &'a NeighborList,
+    pub near_fluid: &'a ClusterList,
     /// Solid neighbours.
-    pub near_walls: &'a NeighborList,
+    pub near_walls: &'a ClusterList,
     /// Records of solids.
     pub walls: &'a [Record<S>],
     /// Layout of the fluid.
@@ -91,7 +100,15 @@ impl<'a, const D: usize, S> Passing<'a, D, S> {
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Holds `state`; nothing is built yet.
     pub fn new(state: State<D>) -> Self {
-        Self { state, ..Self::default() }
+        let (state, solids) = solids::apart(state);
+        Self { state, solids, ..Self::default() }
+    }
+
+    /// All owned particles: fluid, then solids.
+    pub fn whole_state(&self) -> State<D> {
+        let mut whole = self.state.clone();
+        whole.append(&self.solids);
+        whole
     }
 
     /// Everything that a pass needs.
@@ -141,10 +158,12 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     pub fn bytes(&self) -> usize {
         let record = size_of::<Record<S>>();
         let column = 2 * size_of::<[f64; D]>() + 2 * 8 + 8 + 2;
-        self.state.len() * column
+        (self.state.len() + self.solids.len()) * column
             + (self.deviation.len() + self.pressure.len() + self.walls.len()) * record
             + self.acceleration.len() * (size_of::<[f64; D]>() + 8)
             + self.near_fluid.bytes()
             + self.near_walls.bytes()
+            + self.cells.as_ref().map_or(0, CellList::bytes)
+            + self.wall_cells.as_ref().map_or(0, CellList::bytes)
     }
 }

@@ -4,9 +4,9 @@ use super::Rank;
 use super::traveller::{Traveller, arrive, depart, place};
 use crate::error::RunError;
 use crate::model::Model;
-use crate::records::record;
+use crate::records::{Encoder, record};
 use crate::spray::mark_spray;
-use crate::state::{FLUID, State};
+use crate::state::State;
 use crate::team::Team;
 use crate::terms::Acceleration;
 use bytemuck::Pod;
@@ -15,10 +15,18 @@ use sph_decomp::{
     migrate,
 };
 use sph_kernels::Real;
-use sph_neighbors::{CellList, Grid, NeighborList};
+use sph_neighbors::{CellList, ClusterList, Clusters, ColumnOrder, Grid};
 
-/// List entries are padded to this many, the widest lanes in use.
-const PAD: usize = 8;
+/// Edge of a search cell in reaches. Smaller cells have fewer candidates in more rows; measured best
+/// from a half to one.
+const CELL: f64 = 0.67;
+
+/// The fluid is sorted again when this much of the compactness of its clusters is left.
+const LOOSE: f64 = 0.95;
+
+/// Consecutive targets of a cluster are not farther apart than this many reaches. Coordinates of
+/// records wrap around after 256 support radii: what is far must not seem near.
+const JUMP: f64 = 8.0;
 
 /// Cost of a wall particle, in pairs: it is only stored, sorted and sent.
 const WALL_COST: f64 = 4.0;
@@ -33,34 +41,37 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         comm: &dyn Communicator,
         team: &Team,
         model: &Model<D>,
+        encoder: &Encoder,
         has_walls: bool,
         rebalance: bool,
     ) -> Result<Vec<(u64, [f64; D])>, RunError> {
         let gone = self.remove_outside(model);
-        let grid = Grid::new(model.domain.0, model.reach())?;
-        if comm.size() > 1 {
-            self.send_home(comm, rebalance)?;
+        let grid = Grid::new(model.domain.0, CELL * model.reach())?;
+        let settled = self.wall_cells.is_some();
+        let divided = comm.size() > 1 && self.send_home(comm, rebalance)?;
+        if divided || !settled {
+            self.settle_solids(comm, model, encoder, &grid)?;
         }
-        let reach = Reach::Uniform(model.reach());
-        let options = ZoneOptions::default();
-        let zone = Zone::build(&comm, &self.state.position, reach, MaxReach, &options)?;
-        let mut plan = zone.into_plan(&comm)?;
-        self.sort_owned(&grid, &mut plan);
-        let outer = fetch_outer(comm, &grid, &mut plan, &self.state)?;
-        self.fluid.outer = outer.kind.iter().filter(|&&kind| kind == FLUID).count();
-        self.solid.outer = outer.len() - self.fluid.outer;
-        self.lay_out(model, &outer);
-        let (fluid_owned, fluid_outer) = (self.fluid.owned() as u32, self.fluid.outer as u32);
-        // Solids at rest are sent here and never in a pass.
-        self.plan = plan.restrict(|i| i < fluid_owned, |slot| slot < fluid_outer);
+        let loose = self.near_fluid.compactness() < LOOSE * self.compactness;
+        let sorts = comm.size() > 1 || !settled || !gone.is_empty() || loose;
+        let outer = if sorts {
+            let outer = self.arrange_fluid(comm, model, &grid)?;
+            self.lay_out(model, encoder, &outer);
+            outer
+        } else {
+            State::default()
+        };
         team.install(|| self.build_lists(&grid, model.reach(), &outer, has_walls));
+        if sorts {
+            self.compactness = self.near_fluid.compactness();
+        }
         self.spray = mark_spray(model, &self.near_fluid, &self.near_walls);
         Ok(gone)
     }
 
     fn remove_outside(&mut self, model: &Model<D>) -> Vec<(u64, [f64; D])> {
         let state = &self.state;
-        let outside = |i: usize| state.kind[i] == FLUID && !model.contains(&state.position[i]);
+        let outside = |i: usize| !model.contains(&state.position[i]);
         if !(0..state.len()).any(outside) {
             return Vec::new();
         }
@@ -72,97 +83,107 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         gone
     }
 
-    /// Sends every particle to the rank that owns its place.
-    fn send_home(&mut self, comm: &dyn Communicator, rebalance: bool) -> Result<(), RunError> {
-        if rebalance || self.partition.is_none() {
-            let costs = self.costs();
-            self.partition = Some(Orb::build(&comm, &self.state.position, &costs)?);
+    /// Sends every particle to the rank that owns its place. Returns whether space was divided anew:
+    /// only then do solids travel.
+    fn send_home(&mut self, comm: &dyn Communicator, rebalance: bool) -> Result<bool, RunError> {
+        let divides = rebalance || self.partition.is_none();
+        if divides {
+            let positions = [&self.state.position[..], &self.solids.position[..]].concat();
+            self.partition = Some(Orb::build(&comm, &positions, &self.costs())?);
         }
         if let Some(partition) = &self.partition {
-            let owners: Vec<u32> =
-                self.state.position.iter().map(|x| partition.owner(x) as u32).collect();
-            migrate(&comm, &owners, &mut self.state.columns())?;
+            migrate(&comm, &partition.owners(&self.state.position), &mut self.state.columns())?;
+            if divides {
+                let owners = partition.owners(&self.solids.position);
+                migrate(&comm, &owners, &mut self.solids.columns())?;
+            }
         }
+        Ok(divides)
+    }
+
+    /// Cost of each owned particle, fluid first, in pairs: measured numbers of neighbours once there
+    /// are lists. Particles that were just taken out shift the rest, which blurs the estimate a
+    /// little.
+    fn costs(&self) -> Vec<f64> {
+        let pairs = |list: &ClusterList, i| if i < list.len() { list.count(i) } else { 0 };
+        let near = |i| (pairs(&self.near_fluid, i) + pairs(&self.near_walls, i)) as f64;
+        let fluid = (0..self.state.len()).map(|i| FLUID_COST + near(i));
+        fluid.chain(std::iter::repeat_n(WALL_COST, self.solids.len())).collect()
+    }
+
+    /// Finds who needs which fluid particles, sorts those of this rank, and fetches those of others.
+    /// Collective.
+    fn arrange_fluid(
+        &mut self,
+        comm: &dyn Communicator,
+        model: &Model<D>,
+        grid: &Grid<D>,
+    ) -> Result<State<D>, RunError> {
+        let reach = Reach::Uniform(model.reach());
+        let options = ZoneOptions::default();
+        let zone = Zone::build(&comm, &self.state.position, reach, MaxReach, &options)?;
+        let mut plan = zone.into_plan(&comm)?;
+        self.sort_owned(model, &mut plan)?;
+        let outer = fetch_outer(comm, grid, &mut plan, &self.state)?;
+        self.fluid.outer = outer.len();
+        self.plan = plan;
+        Ok(outer)
+    }
+
+    /// Order of the owned fluid: local before inner, then such that clusters are compact, then by id.
+    fn sort_owned(&mut self, model: &Model<D>, plan: &mut HaloPlan) -> Result<(), RunError> {
+        let columns = ColumnOrder::new(model.domain.0, model.spacing)?;
+        let state = &self.state;
+        let inner = plan.is_inner(state.len());
+        let mut keys: Vec<(bool, u64, u64, u32)> = (0..state.len())
+            .map(|i| (inner[i], columns.key(&state.position[i]), state.id[i], i as u32))
+            .collect();
+        keys.sort_unstable();
+        let order: Vec<u32> = keys.iter().map(|key| key.3).collect();
+        let inner = keys.iter().filter(|key| key.0).count();
+        self.fluid = Parts { local: keys.len() - inner, inner, outer: 0 };
+        plan.renumber_owned(&order);
+        self.state.keep(&order);
         Ok(())
     }
 
-    /// Cost of each owned particle, in pairs: measured list lengths once there are lists. Particles
-    /// that were just taken out shift the rest, which blurs the estimate a little.
-    fn costs(&self) -> Vec<f64> {
-        let pairs = |list: &NeighborList, i| if i < list.len() { list.count(i) } else { 0 };
-        let cost = |i: usize| match self.state.kind[i] {
-            FLUID => FLUID_COST + (pairs(&self.near_fluid, i) + pairs(&self.near_walls, i)) as f64,
-            _ => WALL_COST,
-        };
-        (0..self.state.len()).map(cost).collect()
-    }
-
-    /// Order of the owned particles: class, then local before inner, then cell, then id.
-    fn sort_owned(&mut self, grid: &Grid<D>, plan: &mut HaloPlan) {
-        let state = &self.state;
-        let inner = plan.is_inner(state.len());
-        let mut keys: Vec<(bool, bool, u64, u64, u32)> = (0..state.len())
-            .map(|i| {
-                let key = grid.key(&state.position[i]);
-                (state.kind[i] != FLUID, inner[i], key, state.id[i], i as u32)
-            })
-            .collect();
-        keys.sort_unstable();
-        let order: Vec<u32> = keys.iter().map(|key| key.4).collect();
-        let count = |solid: bool, inner: bool| {
-            keys.iter().filter(|key| key.0 == solid && key.1 == inner).count()
-        };
-        self.fluid = Parts { local: count(false, false), inner: count(false, true), outer: 0 };
-        self.solid = Parts { local: count(true, false), inner: count(true, true), outer: 0 };
-        plan.renumber_owned(&order);
-        self.state.keep(&order);
-    }
-
-    /// Writes the records: owned particles, then outer ones.
-    fn lay_out(&mut self, model: &Model<D>, outer: &State<D>) {
-        let encoder = model.encoder();
+    /// Writes the records of the fluid: owned particles, then outer ones.
+    fn lay_out(&mut self, model: &Model<D>, encoder: &Encoder, outer: &State<D>) {
         let density0 = model.equation_of_state.density0();
         let write = |state: &State<D>, i: usize| {
-            let volume = encoder.volume(state.mass[i] / state.density[i]);
+            let weight = encoder.weight(state.mass[i] / state.density[i]);
             let deviation = S::from_f64(state.density[i] - density0);
-            record(encoder.motion(&state.position[i], &state.velocity[i]), deviation, volume)
+            record(encoder.motion(&state.position[i], &state.velocity[i]), deviation, weight)
         };
-        let (owned, others) = (self.fluid.owned(), self.fluid.outer);
+        let owned = self.state.len();
         self.deviation.clear();
         self.deviation.extend((0..owned).map(|i| write(&self.state, i)));
-        self.deviation.extend((0..others).map(|i| write(outer, i)));
+        self.deviation.extend((0..outer.len()).map(|i| write(outer, i)));
         // The density pass writes every one of these before anybody reads them.
         self.pressure.resize(self.deviation.len(), [S::from_f64(0.0); 8]);
-        self.walls.clear();
-        self.walls.extend((owned..self.state.len()).map(|i| write(&self.state, i)));
-        self.walls.extend((others..outer.len()).map(|i| write(outer, i)));
-        self.walls.push([S::from_f64(0.0); 8]);
         self.acceleration.resize(owned, Acceleration::default());
         self.density_rate.resize(owned, 0.0);
     }
 
     fn build_lists(&mut self, grid: &Grid<D>, reach: f64, outer: &State<D>, has_walls: bool) {
-        let (owned, others) = (self.fluid.owned(), self.fluid.outer);
-        let gather = |mine: std::ops::Range<usize>, theirs: std::ops::Range<usize>| {
-            let ids = [&self.state.id[mine.clone()], &outer.id[theirs.clone()]].concat();
-            let positions = [&self.state.position[mine], &outer.position[theirs]].concat();
-            (ids, positions)
-        };
-        let targets = &self.state.position[..owned];
-        let (ids, positions) = gather(0..owned, 0..others);
-        let cells = CellList::build(grid, &positions, &ids);
-        let itself = |t: usize| t as u32;
-        self.near_fluid.rebuild(&cells, targets, itself, reach, PAD);
-        if has_walls {
-            let (ids, positions) = gather(owned..self.state.len(), others..outer.len());
-            let cells = CellList::build(grid, &positions, &ids);
-            let nobody = positions.len() as u32;
-            self.near_walls.rebuild(&cells, targets, |_| nobody, reach, PAD);
+        let targets = &self.state.position[..];
+        let clusters = Clusters::without_jumps(targets, &[self.fluid.local], JUMP * reach);
+        let cells = self.cells.get_or_insert_with(|| CellList::build(grid, &[], &[]));
+        if outer.is_empty() {
+            cells.rebuild(grid, targets, &self.state.id);
+        } else {
+            let ids = [&self.state.id[..], &outer.id[..]].concat();
+            let positions = [targets, &outer.position[..]].concat();
+            cells.rebuild(grid, &positions, &ids);
+        }
+        self.near_fluid.rebuild(&clusters, cells, targets, true, reach);
+        if let Some(wall_cells) = self.wall_cells.as_ref().filter(|_| has_walls) {
+            self.near_walls.rebuild(&clusters, wall_cells, targets, false, reach);
         }
     }
 }
 
-/// Receives the state of the outer particles and sorts them: class, then cell, then id.
+/// Receives the state of the outer particles and sorts them: by cell, then by id.
 fn fetch_outer<const D: usize>(
     comm: &dyn Communicator,
     grid: &Grid<D>,
@@ -173,8 +194,8 @@ fn fetch_outer<const D: usize>(
     let received = halo.exchange_now(&comm, plan, |i| depart(state, i as usize))?;
     let mut order: Vec<u32> = (0..received.len() as u32).collect();
     order.sort_by_cached_key(|&k| {
-        let (id, kind, position) = place(&received[k as usize]);
-        (kind != FLUID, grid.key(&position), id)
+        let (id, position) = place(&received[k as usize]);
+        (grid.key(&position), id)
     });
     let mut outer = State::default();
     for &k in &order {

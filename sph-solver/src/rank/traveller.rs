@@ -20,16 +20,16 @@ pub fn depart<const D: usize>(state: &State<D>, i: usize) -> Traveller {
     words
 }
 
-/// Id, kind and position of a packed particle: what its place in the order depends on.
-pub fn place<const D: usize>(words: &Traveller) -> (u64, u16, [f64; D]) {
-    (words[0], words[1] as u16, std::array::from_fn(|k| f64::from_bits(words[4 + k])))
+/// Id and position of a packed particle: what its place in the order depends on.
+pub fn place<const D: usize>(words: &Traveller) -> (u64, [f64; D]) {
+    (words[0], std::array::from_fn(|k| f64::from_bits(words[4 + k])))
 }
 
 /// Appends a packed particle.
 pub fn arrive<const D: usize>(words: &Traveller, state: &mut State<D>) {
-    let (id, kind, position) = place(words);
+    let (id, position) = place(words);
     state.id.push(id);
-    state.kind.push(kind);
+    state.kind.push(words[1] as u16);
     state.mass.push(f64::from_bits(words[2]));
     state.density.push(f64::from_bits(words[3]));
     state.position.push(position);

@@ -37,11 +37,11 @@ const KEPT: usize = 2;
 pub fn save<const D: usize>(
     comm: &dyn Communicator,
     plan: &RunPlan<D>,
-    state: &State<D>,
+    state: State<D>,
     clock: Clock,
     progress: Progress,
 ) -> Result<(), RunError> {
-    let mut columns = state.clone().into_columns();
+    let mut columns = state.into_columns();
     gather_by_id(comm, &mut columns, |columns| columns.0.clone())?;
     if comm.rank() != 0 {
         return Ok(());
@@ -114,7 +114,7 @@ fn load_here<const D: usize>(
         extremes: Extremes {
             speed2: attributes.f64("largest_speed_squared")?,
             acceleration2: attributes.f64("largest_acceleration_squared")?,
-            fault: 0.0,
+            ..Extremes::NONE
         },
     };
     let count = |name: &str, attributes: &Attributes| attributes.u64(name);

@@ -11,7 +11,7 @@ use crate::error::RunError;
 use crate::model::Model;
 use crate::physics::Physics;
 use crate::simulation::{FullStep, Lost, Simulation};
-use crate::state::{FLUID, State};
+use crate::state::State;
 use crate::team::Team;
 use crate::timings::Phase;
 use bytemuck::Pod;
@@ -179,11 +179,7 @@ impl<const D: usize> Outputs<'_, D> {
         if self.plan.snapshots.is_none() {
             return Ok(());
         }
-        let mut walls = simulation.state().clone();
-        let keep: Vec<u32> =
-            (0..walls.len() as u32).filter(|&i| walls.kind[i as usize] != FLUID).collect();
-        walls.keep(&keep);
-        let mut columns = walls.into_columns();
+        let mut columns = simulation.rank().solids.clone().into_columns();
         gather_by_id(self.comm, &mut columns, |columns| columns.0.clone())?;
         let walls = State::from_columns(columns);
         match files {

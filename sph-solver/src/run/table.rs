@@ -13,7 +13,7 @@ use crate::simulation::Simulation;
 use crate::state::State;
 use crate::team::Team;
 use crate::terms::{
-    ArtificialViscosity, Continuity, HydrostaticDiffusion, LaminarViscosity, OneSidedRiemannWall,
+    ArtificialViscosity, Continuity, DeltaContinuity, LaminarViscosity, OneSidedRiemannWall,
     PairTerm, Pressure, SymmetricPressure,
 };
 use bytemuck::Pod;
@@ -114,11 +114,10 @@ where
     let model = &job.model;
     let sound_speed = model.limits.sound_speed;
     let stiffness = model.equation_of_state.density0() / (sound_speed * sound_speed);
-    let diffusion = HydrostaticDiffusion {
+    let fluid_density = DeltaContinuity {
         strength: features.density_diffusion * model.limits.smoothing_length * sound_speed,
         hydrostatic_gradient: model.gravity.map(|g| g * stiffness),
     };
-    let fluid_density = (Continuity, diffusion);
     if features.walls {
         finish::<D, S, _>(
             job,

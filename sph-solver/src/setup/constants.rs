@@ -67,7 +67,7 @@ pub enum StepLimit {
 /// make it shorter for a while.
 pub fn time_step<const D: usize>(constants: &Constants<D>, speed: f64) -> (f64, StepLimit) {
     let acceleration2 = constants.gravity.iter().map(|g| g * g).sum();
-    let flow = Extremes { speed2: speed * speed, acceleration2, fault: 0.0 };
+    let flow = Extremes { speed2: speed * speed, acceleration2, ..Extremes::NONE };
     let limits = constants.step_limits();
     let step = limits.step(flow);
     let sound = StepLimits { kinematic_viscosity: 0.0, ..limits };

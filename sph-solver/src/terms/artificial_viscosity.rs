@@ -1,4 +1,4 @@
-use super::{Pair, PairTerm, Pressure, Source, Sum, Target, push_viscous};
+use super::{Pair, PairTerm, Pressure, Source, Target, viscous};
 use sph_kernels::Lanes;
 
 /// Artificial viscosity of the inviscid scheme:
@@ -16,14 +16,8 @@ pub struct ArtificialViscosity {
 
 impl<const D: usize> PairTerm<D, Pressure> for ArtificialViscosity {
     #[inline(always)]
-    fn add<L: Lanes>(
-        &self,
-        i: &Target<D, L>,
-        j: &Source<D, L>,
-        pair: &Pair<D, L>,
-        sum: &mut Sum<D, L>,
-    ) {
-        push_viscous(self.strength, self.softening, i, j, pair, sum);
+    fn coefficient<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, pair: &Pair<D, L>) -> L {
+        viscous(self.strength, self.softening, i, j, pair)
     }
 }
 
@@ -35,10 +29,10 @@ mod tests {
     #[test]
     fn it_slows_an_approach() {
         // i moves towards j at +x: the acceleration of i must point back.
-        let (i, j, p) = scalar::pair([-0.1, 0.0], ([2.0, 0.0], [0.0; 2]), (0.0, 0.0), 0.01, -50.0);
-        let mut sum = Sum::zero();
-        ArtificialViscosity { strength: 1.0, softening: 0.0 }.add(&i, &j, &p, &mut sum);
+        let pair = scalar::pair([-0.1, 0.0], ([2.0, 0.0], [0.0; 2]), (0.0, 0.0), 0.01, -50.0);
+        let term = ArtificialViscosity { strength: 1.0, softening: 0.0 };
+        let a = scalar::rate::<Pressure, _>(&term, &pair).0;
         let expected = (2.0 * -0.1 / 0.01) * -50.0 * 0.01 / 1000.0 * -0.1;
-        assert!((sum.acceleration[0] - expected).abs() < 1e-15 && expected < 0.0);
+        assert!((a[0] - expected).abs() < 1e-15 && expected < 0.0);
     }
 }

@@ -1,4 +1,4 @@
-use super::{Pair, PairTerm, Pressure, Source, Sum, Target};
+use super::{Pair, PairTerm, Pressure, Source, Target};
 use sph_kernels::Lanes;
 
 /// Pressure force: dv_i/dt = −(1/ρ_i) Σ_j (p_i + p_j) ∇W_ij V_j.
@@ -10,15 +10,8 @@ pub struct SymmetricPressure;
 
 impl<const D: usize> PairTerm<D, Pressure> for SymmetricPressure {
     #[inline(always)]
-    fn add<L: Lanes>(
-        &self,
-        i: &Target<D, L>,
-        j: &Source<D, L>,
-        pair: &Pair<D, L>,
-        sum: &mut Sum<D, L>,
-    ) {
-        let factor = (i.quantity + j.quantity) * pair.slope_volume;
-        sum.push(-(factor * i.inverse_density), pair);
+    fn coefficient<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, _: &Pair<D, L>) -> L {
+        -i.quantity - j.quantity
     }
 }
 
@@ -29,10 +22,9 @@ mod tests {
 
     #[test]
     fn positive_pressure_pushes_apart() {
-        let (i, j, p) = scalar::pair([-0.1, 0.0], ([0.0; 2], [0.0; 2]), (3.0, 5.0), 0.01, -50.0);
-        let mut sum = Sum::zero();
-        SymmetricPressure.add(&i, &j, &p, &mut sum);
-        assert!((sum.acceleration[0] - 8.0 * 50.0 * 0.01 * (-0.1) / 1000.0).abs() < 1e-15);
-        assert_eq!(sum.acceleration[1], 0.0);
+        let pair = scalar::pair([-0.1, 0.0], ([0.0; 2], [0.0; 2]), (3.0, 5.0), 0.01, -50.0);
+        let a = scalar::rate::<Pressure, _>(&SymmetricPressure, &pair).0;
+        assert!((a[0] - 8.0 * 50.0 * 0.01 * (-0.1) / 1000.0).abs() < 1e-15);
+        assert_eq!(a[1], 0.0);
     }
 }

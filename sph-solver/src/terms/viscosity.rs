@@ -1,4 +1,4 @@
-use super::{Pair, PairTerm, Pressure, Source, Sum, Target, push_viscous};
+use super::{Pair, PairTerm, Pressure, Source, Target, viscous};
 use sph_kernels::Lanes;
 
 /// Physical viscosity: dv_i/dt += (K μ/ρ_i) Σ_j π_ij ∇W_ij V_j, K = 2 (d + 2),
@@ -17,21 +17,16 @@ pub struct LaminarViscosity {
 
 impl<const D: usize> PairTerm<D, Pressure> for LaminarViscosity {
     #[inline(always)]
-    fn add<L: Lanes>(
-        &self,
-        i: &Target<D, L>,
-        j: &Source<D, L>,
-        pair: &Pair<D, L>,
-        sum: &mut Sum<D, L>,
-    ) {
+    fn coefficient<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, pair: &Pair<D, L>) -> L {
         let strength = 2.0 * (D as f64 + 2.0) * self.dynamic_viscosity;
-        push_viscous(strength, self.softening, i, j, pair, sum);
+        viscous(strength, self.softening, i, j, pair)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terms::scalar;
     use sph_kernels::{Kernel, WendlandC2};
 
     /// A shear flow v_x = y² on a lattice has Laplacian 2: the term must give ν · 2.
@@ -40,7 +35,7 @@ mod tests {
         let (dp, radius) = (0.01, 0.05);
         let norm = WendlandC2::norm(2) / f64::powi(radius, 4);
         let term = LaminarViscosity { dynamic_viscosity: 1.0, softening: 0.0 };
-        let mut sum = Sum::<2, f64>::zero();
+        let mut sum = 0.0;
         let n = (radius / dp) as i32;
         for a in -n..=n {
             for b in -n..=n {
@@ -50,17 +45,12 @@ mod tests {
                     continue;
                 }
                 let slope = norm * WendlandC2::slope(q);
-                let (i, j, p) = crate::terms::scalar::pair(
-                    [-x, -y],
-                    ([0.0; 2], [y * y, 0.0]),
-                    (0.0, 0.0),
-                    dp * dp,
-                    slope,
-                );
-                term.add(&i, &j, &p, &mut sum);
+                let pair =
+                    scalar::pair([-x, -y], ([0.0; 2], [y * y, 0.0]), (0.0, 0.0), dp * dp, slope);
+                sum += scalar::rate::<Pressure, _>(&term, &pair).0[0];
             }
         }
         let expected = 2.0 / 1000.0;
-        assert!((sum.acceleration[0] / expected - 1.0).abs() < 0.02, "{sum:?}");
+        assert!((sum / expected - 1.0).abs() < 0.02, "{sum}");
     }
 }

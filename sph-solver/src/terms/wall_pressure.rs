@@ -1,4 +1,4 @@
-use super::{Pair, PairTerm, Pressure, Source, Sum, Target, dot, lanes};
+use super::{Pair, PairTerm, Pressure, Source, Target, difference, dot, lanes};
 use sph_kernels::Lanes;
 
 /// Pressure of a wall by a one-sided Riemann problem for every pair of fluid particle i and wall
@@ -21,24 +21,17 @@ pub struct OneSidedRiemannWall<const D: usize> {
 
 impl<const D: usize> PairTerm<D, Pressure> for OneSidedRiemannWall<D> {
     #[inline(always)]
-    fn add<L: Lanes>(
-        &self,
-        i: &Target<D, L>,
-        j: &Source<D, L>,
-        pair: &Pair<D, L>,
-        sum: &mut Sum<D, L>,
-    ) {
-        let gravity: [L; D] = self.gravity.map(lanes);
+    fn coefficient<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, pair: &Pair<D, L>) -> L {
         // g·(x_w − x_i) = −g·r_iw, and e_iw = −r_iw / |r_iw|.
-        let hydrostatic = dot(&gravity, &pair.offset) * i.density;
+        let weight: [L; D] = self.gravity.map(|g| lanes::<L>(g) * pair.unit * i.density);
+        let hydrostatic = dot(&weight, &pair.offset);
         let pressures = (i.quantity + i.quantity - hydrostatic).max(L::zero());
-        let approach = (-dot(&j.approach, &pair.offset)).max(L::zero());
-        // The floor keeps 0/0 of a padded self pair finite; it is far below any real distance.
-        let speed = approach.div(pair.distance.max(lanes(1e-30)));
+        let approach = -dot(&difference(&i.velocity, &j.velocity), &pair.offset);
+        // The floor keeps 0/0 of coincident particles finite; it is far below any real distance.
+        let speed = approach.max(L::zero()).div(pair.distance.max(lanes(1e-20)));
         let limited = (speed * lanes(6.0)).min(lanes(self.sound_speed));
         let dissipation = (speed + speed) * i.density * limited;
-        let factor = (pressures + dissipation) * pair.slope_volume;
-        sum.push(-(factor * i.inverse_density), pair);
+        -pressures - dissipation
     }
 }
 
@@ -53,10 +46,8 @@ mod tests {
     /// Fluid 0.1 m above a wall particle.
     fn upward(pressure: f64, velocity: f64) -> f64 {
         let v = ([0.0, velocity], [0.0; 2]);
-        let (i, j, p) = scalar::pair([0.0, 0.1], v, (pressure, 0.0), 0.01, -50.0);
-        let mut sum = Sum::zero();
-        WALL.add(&i, &j, &p, &mut sum);
-        sum.acceleration[1]
+        let pair = scalar::pair([0.0, 0.1], v, (pressure, 0.0), 0.01, -50.0);
+        scalar::rate::<Pressure, _>(&WALL, &pair).0[1]
     }
 
     #[test]
@@ -77,10 +68,8 @@ mod tests {
     }
 
     #[test]
-    fn a_padded_self_pair_adds_nothing() {
-        let (i, j, p) = scalar::pair([0.0; 2], ([1.0; 2], [1.0; 2]), (7.0, 7.0), 0.01, -50.0);
-        let mut sum = Sum::zero();
-        WALL.add(&i, &j, &p, &mut sum);
-        assert_eq!(sum.acceleration, [0.0; 2]);
+    fn coincident_particles_do_not_push() {
+        let pair = scalar::pair([0.0; 2], ([1.0; 2], [0.0; 2]), (7.0, 7.0), 0.01, -50.0);
+        assert_eq!(scalar::rate::<Pressure, _>(&WALL, &pair).0, [0.0; 2]);
     }
 }

@@ -14,14 +14,14 @@ use sph_solver::simulation::{FullStep, Simulation};
 use sph_solver::state::{FLUID, State};
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    ArtificialViscosity, Continuity, HydrostaticDiffusion, OneSidedRiemannWall, SymmetricPressure,
+    ArtificialViscosity, Continuity, DeltaContinuity, OneSidedRiemannWall, SymmetricPressure,
 };
 use sph_solver::timestep::StepLimits;
 
 pub const GRAVITY: f64 = 9.81;
 
 pub type BoxTerms<const D: usize> = Terms<
-    (Continuity, HydrostaticDiffusion<D>),
+    DeltaContinuity<D>,
     (SymmetricPressure, ArtificialViscosity),
     Continuity,
     OneSidedRiemannWall<D>,
@@ -64,13 +64,10 @@ impl<const D: usize> Case<D> {
         let model = self.model();
         let (h, c0) = (model.limits.smoothing_length, model.limits.sound_speed);
         Terms {
-            fluid_density: (
-                Continuity,
-                HydrostaticDiffusion {
-                    strength: 0.1 * h * c0,
-                    hydrostatic_gradient: model.gravity.map(|g| g * 1000.0 / (c0 * c0)),
-                },
-            ),
+            fluid_density: DeltaContinuity {
+                strength: 0.1 * h * c0,
+                hydrostatic_gradient: model.gravity.map(|g| g * 1000.0 / (c0 * c0)),
+            },
             fluid_force: (
                 SymmetricPressure,
                 ArtificialViscosity { strength: 0.02 * h * c0 * 1000.0, softening: 0.01 * h * h },

@@ -1,0 +1,109 @@
+//! What a sweep reads and returns.
+
+use super::Pair;
+use sph_kernels::{Lanes, Real};
+use sph_neighbors::CLUSTER;
+
+/// What word 6 of the records holds while a sweep runs, what the coefficients of its terms multiply,
+/// and what it returns.
+pub trait Quantity: Copy + Send + Sync + 'static {
+    /// Result per target.
+    type Rate<const D: usize>: Copy + Default + Send + Sync;
+    /// Sum over the pairs of a target, one target a lane.
+    type Sum<const D: usize, L: Lanes>: Copy;
+
+    /// Nothing added yet.
+    fn zero<const D: usize, L: Lanes>() -> Self::Sum<D, L>;
+
+    /// Adds one pair a lane.
+    fn add<const D: usize, L: Lanes>(sum: &mut Self::Sum<D, L>, coefficient: L, pair: &Pair<D, L>);
+
+    /// The results of the targets in the first lanes, given their densities in kg/m³.
+    fn rates<const D: usize, L: Lanes>(
+        sum: &Self::Sum<D, L>,
+        density: &[f64],
+        rates: &mut [Self::Rate<D>],
+    );
+}
+
+/// Records carry the density deviation ρ − ρ0 (kg/m³). A term gives c, with
+/// `dρ_i/dt = ρ_i Σ_j c w`, where `w r_ij = ∇W_ij V_j` with r_ij in units. The sweep returns dρ/dt,
+/// kg/m³/s.
+#[derive(Debug, Clone, Copy)]
+pub struct Deviation;
+
+/// Records carry the pressure (Pa). A term gives c in Pa, with `dv_i/dt = (1/ρ_i) Σ_j c ∇W_ij V_j`.
+/// The sweep returns accelerations, m/s².
+#[derive(Debug, Clone, Copy)]
+pub struct Pressure;
+
+/// dv/dt of a particle, m/s².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Acceleration<const D: usize>(pub [f64; D]);
+
+impl<const D: usize> Default for Acceleration<D> {
+    fn default() -> Self {
+        Self([0.0; D])
+    }
+}
+
+impl Quantity for Deviation {
+    type Rate<const D: usize> = f64;
+    type Sum<const D: usize, L: Lanes> = L;
+
+    #[inline(always)]
+    fn zero<const D: usize, L: Lanes>() -> L {
+        L::zero()
+    }
+
+    #[inline(always)]
+    fn add<const D: usize, L: Lanes>(sum: &mut L, coefficient: L, pair: &Pair<D, L>) {
+        *sum = coefficient.mul_add(pair.weight, *sum);
+    }
+
+    #[inline(always)]
+    fn rates<const D: usize, L: Lanes>(sum: &L, density: &[f64], rates: &mut [f64]) {
+        let sum = numbers(*sum);
+        for ((rate, sum), density) in rates.iter_mut().zip(sum).zip(density) {
+            *rate = sum * density;
+        }
+    }
+}
+
+impl Quantity for Pressure {
+    type Rate<const D: usize> = Acceleration<D>;
+    type Sum<const D: usize, L: Lanes> = [L; D];
+
+    #[inline(always)]
+    fn zero<const D: usize, L: Lanes>() -> [L; D] {
+        [L::zero(); D]
+    }
+
+    #[inline(always)]
+    fn add<const D: usize, L: Lanes>(sum: &mut [L; D], coefficient: L, pair: &Pair<D, L>) {
+        let factor = coefficient * pair.weight;
+        for (sum, offset) in sum.iter_mut().zip(pair.offset) {
+            *sum = factor.mul_add(offset, *sum);
+        }
+    }
+
+    #[inline(always)]
+    fn rates<const D: usize, L: Lanes>(
+        sum: &[L; D],
+        density: &[f64],
+        rates: &mut [Acceleration<D>],
+    ) {
+        let sum = sum.map(numbers);
+        for (l, (rate, density)) in rates.iter_mut().zip(density).enumerate() {
+            *rate = Acceleration(std::array::from_fn(|k| sum[k][l] / density));
+        }
+    }
+}
+
+/// The numbers in the lanes, and zeros up to the size of a cluster.
+#[inline(always)]
+fn numbers<L: Lanes>(lanes: L) -> [f64; CLUSTER] {
+    let mut all = [L::Scalar::from_f64(0.0); CLUSTER];
+    lanes.store(&mut all);
+    all.map(Real::to_f64)
+}
