@@ -47,8 +47,8 @@ fn kernel<K: Kernel, S: Real>(criterion: &mut Criterion, scalar: &str) {
     };
     measure("scalar", |slopes| slopes.run::<S>());
     measure("portable", |slopes| S::dispatch_portable(slopes));
-    if sph_kernels::simd_level() == "avx2+fma" {
-        measure("avx2", |slopes| S::dispatch(slopes));
+    if sph_kernels::simd_level() != "portable" {
+        measure(sph_kernels::simd_level(), |slopes| S::dispatch(slopes));
     }
     group.finish();
 }

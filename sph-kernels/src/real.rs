@@ -39,16 +39,17 @@ pub trait Real:
     /// way differences come out in units.
     fn encode_coordinate(x: f64, unit: f64) -> Self;
 
-    /// Runs `op` with the widest lanes of this CPU: 8 × `f32` or 4 × `f64`, in AVX2 registers
-    /// where the CPU has AVX2 and FMA, otherwise as [`dispatch_portable`](Self::dispatch_portable).
+    /// Runs `op` with lanes for this CPU: 8 × `f32` or, with AVX-512, 8 × `f64`; 8 × `f32` or
+    /// 4 × `f64` in AVX2 registers where the CPU has AVX2 and FMA; otherwise as
+    /// [`dispatch_portable`](Self::dispatch_portable).
     ///
     /// The check costs one load and one branch a call: call it per chunk of particles.
     fn dispatch<O: Vectorized<Scalar = Self>>(op: O) -> O::Output;
 
-    /// Runs `op` with lanes of the same count that every CPU of the target has (SSE2, NEON).
+    /// Runs `op` with 8 × `f32` or 4 × `f64` in vectors that every CPU of the target has (SSE2, NEON).
     ///
-    /// Meant for tests and measurements. Sums run in the same order as with [`dispatch`], but
-    /// results may differ in the last bits: without FMA, [`Lanes::mul_add`] rounds twice.
+    /// Meant for tests and measurements. Results may differ from those of [`dispatch`] in the last
+    /// bits: without FMA, [`Lanes::mul_add`] rounds twice.
     ///
     /// [`dispatch`]: Self::dispatch
     fn dispatch_portable<O: Vectorized<Scalar = Self>>(op: O) -> O::Output;
@@ -72,6 +73,10 @@ impl Real for f32 {
 
     #[inline]
     fn dispatch<O: Vectorized<Scalar = Self>>(op: O) -> O::Output {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(cpu) = crate::lanes::avx512::Avx512::detect() {
+            return cpu.run_f32(op);
+        }
         #[cfg(target_arch = "x86_64")]
         if let Some(cpu) = crate::lanes::avx2::Avx2::detect() {
             return cpu.run_f32(op);
@@ -103,6 +108,10 @@ impl Real for f64 {
 
     #[inline]
     fn dispatch<O: Vectorized<Scalar = Self>>(op: O) -> O::Output {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(cpu) = crate::lanes::avx512::Avx512::detect() {
+            return cpu.run_f64(op);
+        }
         #[cfg(target_arch = "x86_64")]
         if let Some(cpu) = crate::lanes::avx2::Avx2::detect() {
             return cpu.run_f64(op);

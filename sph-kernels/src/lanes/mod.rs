@@ -2,6 +2,8 @@
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx2;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod avx512;
 pub(crate) mod portable;
 mod scalar;
 
@@ -104,9 +106,13 @@ pub trait Vectorized {
     fn run<L: Lanes<Scalar = Self::Scalar>>(self) -> Self::Output;
 }
 
-/// Name of the lanes that [`Real::dispatch`] uses here, for reports: `"avx2+fma"` or
+/// Name of the lanes that [`Real::dispatch`] uses here, for reports: `"avx512"`, `"avx2+fma"` or
 /// `"portable"`.
 pub fn simd_level() -> &'static str {
+    #[cfg(target_arch = "x86_64")]
+    if avx512::Avx512::detect().is_some() {
+        return "avx512";
+    }
     #[cfg(target_arch = "x86_64")]
     if avx2::Avx2::detect().is_some() {
         return "avx2+fma";
