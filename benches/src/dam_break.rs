@@ -134,6 +134,12 @@ impl DamBreak {
         state.velocity.push([rate * x[0], 0.0, -rate * x[2]]);
     }
 
+    /// Wall particles in the layer next to the inside of the box.
+    pub fn layer(&self) -> u64 {
+        let [x, y, z] = BOX.map(|l| (l / self.spacing).round() as u64);
+        (x + 2) * (y + 2) * (z + 1) - x * y * z
+    }
+
     /// The simulation on one rank.
     pub fn simulation<'a, S: Real + Pod>(
         &self,

@@ -28,6 +28,12 @@ macro_rules! check {
                 $name::<f64>(data, core::marker::PhantomData).run::<f64>();
                 f64::dispatch($name(data, core::marker::PhantomData));
                 f64::dispatch_portable($name(data, core::marker::PhantomData));
+                // Where the CPU has wider registers, these are not what it dispatches to.
+                #[cfg(target_arch = "x86_64")]
+                if let Some(cpu) = avx2::Avx2::detect() {
+                    cpu.run_f32($name(data, core::marker::PhantomData));
+                    cpu.run_f64($name(data, core::marker::PhantomData));
+                }
             }
         }
     };

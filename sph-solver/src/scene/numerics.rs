@@ -69,7 +69,7 @@ fn default_density_diffusion() -> At<f64> {
 }
 
 fn default_skin() -> At<f64> {
-    At::default_of(0.1)
+    At::default_of(0.15)
 }
 
 /// Discretisation of the flow equations.

@@ -4,16 +4,17 @@ use super::constants::StepLimit;
 use serde::Serialize;
 use std::fmt;
 
-/// Memory per fluid particle, bytes: state, records, neighbour lists and skin at about 92 neighbours.
+/// Memory per fluid particle, bytes, at the peak: state, records, neighbour lists and skin at about 92
+/// neighbours, and what a rebuild needs for a moment.
 /// Runs report what they used as `bytes_per_particle`, over fluid and walls, in `summary.json`.
-pub const BYTES_PER_FLUID_PARTICLE: f64 = 850.0;
+pub const BYTES_PER_FLUID_PARTICLE: f64 = 450.0;
 
 /// Memory per wall particle, bytes. Walls are sources only and have no neighbour lists.
-pub const BYTES_PER_WALL_PARTICLE: f64 = 150.0;
+pub const BYTES_PER_WALL_PARTICLE: f64 = 200.0;
 
 /// Pairs that one core of a present machine evaluates in a second in mixed precision, search, skin and
 /// walls included, to within a factor of two. For the cost estimate only.
-pub const PAIRS_PER_CORE_SECOND: f64 = 3.0e8;
+pub const PAIRS_PER_CORE_SECOND: f64 = 8.0e8;
 
 /// Passes over all pairs in a step: density and force.
 pub const PASSES_PER_STEP: f64 = 2.0;

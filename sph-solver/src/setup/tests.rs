@@ -67,7 +67,7 @@ fn a_tank_becomes_a_lattice() {
     let constants = &setup.constants;
     assert!((constants.support_radius - 0.3).abs() < 1e-15);
     assert!((constants.smoothing_length - 0.15).abs() < 1e-15);
-    assert!((constants.skin - 0.03).abs() < 1e-15);
+    assert!((constants.skin - 0.045).abs() < 1e-15);
     assert!((constants.sound_speed - 20.0 * 20.0_f64.sqrt()).abs() < 1e-12);
     assert!((constants.domain.0[0] + 0.6).abs() < 1e-12);
     assert!((constants.domain.1[1] - 3.6).abs() < 1e-12);

@@ -28,7 +28,7 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Skin of the lists in whole steps, in support radii.
-    #[arg(long, default_value_t = 0.1)]
+    #[arg(long, default_value_t = 0.15)]
     skin: f64,
     /// Runs one case of whole steps and prints its row: every case has a process of its own,
     /// because a process has one peak of memory.

@@ -30,29 +30,24 @@ pub fn print_machine(machine: &Machine) {
 /// Prints the sweeps.
 pub fn print_sweeps(rows: &[SweepRow]) {
     println!();
-    println!("sweeps, per core: pairs within the support; with all list entries in parentheses");
+    println!("sweeps, per core: rates are of pairs within the support");
     println!(
-        "| precision | particles | support | neighbours (entries) | density visits M/s | \
+        "| precision | particles | support | neighbours (lanes) | density visits M/s | \
          force visits M/s | δ-SPH pairs M/s | of FMA peak | 2 threads |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     for row in rows {
         println!(
-            "| {} | {} | {} | {:.0} ({:.0}) | {:.0} ({:.0}) | {:.0} ({:.0}) | {:.0} ({:.0}) | \
-             {:.3} ({:.3}) | {:.2} × |",
+            "| {} | {} | {} | {:.0} ({:.0}) | {:.0} | {:.0} | {:.0} | {:.3} | {:.2} × |",
             row.precision,
             row.particles,
             row.support,
             row.neighbors,
-            row.entries,
+            row.lanes,
             row.density_visits * 1e-6,
-            row.density_visits * row.entries / row.neighbors * 1e-6,
             row.force_visits * 1e-6,
-            row.force_visits * row.entries / row.neighbors * 1e-6,
             row.pairs * 1e-6,
-            row.entry_pairs * 1e-6,
             row.peak_fraction,
-            row.entry_peak_fraction,
             row.two_threads,
         );
     }
@@ -63,20 +58,21 @@ pub fn print_lists(rows: &[ListRow]) {
     println!();
     println!("lists, per core");
     println!(
-        "| particles | reach | entries | tests per entry | cells ns/particle | lists ns/particle | \
-         entries M/s | bytes/particle | 2 threads |"
+        "| lists | particles | reach | neighbours | tests per neighbour | cells ns/particle | \
+         lists ns/particle | neighbours M/s | bytes/particle | 2 threads |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     for row in rows {
         println!(
-            "| {} | {} | {:.0} | {:.2} | {:.0} | {:.0} | {:.0} | {:.0} | {:.2} × |",
+            "| {} | {} | {} | {:.0} | {:.2} | {:.0} | {:.0} | {:.0} | {:.0} | {:.2} × |",
+            row.kind,
             row.particles,
             row.reach,
-            row.entries,
-            row.tests_per_entry,
+            row.neighbors,
+            row.tests_per_neighbor,
             row.cells,
             row.lists,
-            row.entry_rate * 1e-6,
+            row.rate * 1e-6,
             row.bytes,
             row.two_threads,
         );
@@ -88,8 +84,8 @@ pub fn print_steps(rows: &[StepRow]) {
     println!();
     println!("whole steps of the dam break, per core");
     println!(
-        "| case | precision | threads | support | skin | fluid (all) particles | entries | \
-         M updates/s fluid (all) | entry visits M/s | ms/step | density / force / rebuild % | \
+        "| case | precision | threads | support | skin | fluid (all) particles | neighbours | \
+         M updates/s fluid (with one layer of wall) | visits M/s | ms/step | density / force / rebuild % | \
          steps per rebuild | ms/rebuild | peak bytes per particle (per fluid particle; counted) | \
          cores had |"
     );
@@ -108,10 +104,10 @@ pub fn print_steps(rows: &[StepRow]) {
             row.case.skin,
             row.fluid,
             row.particles,
-            row.entries,
+            row.neighbors,
             row.fluid_updates * 1e-6,
-            row.all_updates * 1e-6,
-            row.entry_visits * 1e-6,
+            row.layer_updates * 1e-6,
+            row.visits * 1e-6,
             row.seconds_per_step * 1e3,
             row.density_share * 100.0,
             row.force_share * 100.0,

@@ -45,14 +45,15 @@ pub struct StepRow {
     pub particles: usize,
     /// Steps measured.
     pub steps: u64,
-    /// Mean number of list entries of a fluid particle, walls and skin included.
-    pub entries: f64,
+    /// Mean number of neighbours of a fluid particle within support and skin, walls included.
+    pub neighbors: f64,
     /// Fluid particles × steps per core second.
     pub fluid_updates: f64,
-    /// Fluid and wall particles × steps per core second.
-    pub all_updates: f64,
-    /// Visits of list entries in both sweeps per core second of everything.
-    pub entry_visits: f64,
+    /// Fluid particles and one layer of wall particles × steps per core second: what codes count
+    /// whose walls are one layer of particles.
+    pub layer_updates: f64,
+    /// Visits of these neighbours in both sweeps per core second of everything.
+    pub visits: f64,
     /// Wall seconds of a step.
     pub seconds_per_step: f64,
     /// Core seconds per wall second: less than the threads where others took the cores.
@@ -89,14 +90,16 @@ pub fn measure(quick: bool, skin: f64) -> Result<Vec<StepRow>, Box<dyn Error>> {
         let small = collapse(0.02, 20);
         cases.extend([small, Case { double: true, ..small }, Case { threads: 2, ..small }]);
     } else {
-        for (spacing, steps) in [(0.0133, 120), (0.009, 60), (0.00625, 24), (0.0043, 16)] {
+        for (spacing, steps) in
+            [(0.0133, 120), (0.009, 60), (0.00625, 30), (0.0043, 16), (0.0034, 10)]
+        {
             cases.push(collapse(spacing, steps));
         }
         for large in [collapse(0.009, 60), collapse(0.0043, 16)] {
             cases.extend([Case { double: true, ..large }, Case { threads: 2, ..large }]);
         }
         let small = collapse(0.009, 60);
-        cases.extend([0.05, 0.1, 0.15, 0.2, 0.3].map(|skin| Case { skin, ..small }));
+        cases.extend([0.05, 0.1, 0.2, 0.3].map(|skin| Case { skin, ..small }));
         // The default support of scenes, and one with 92 neighbours.
         cases.push(Case { support: 3.0, ..small });
         cases.push(Case { support: 2.8, ..collapse(0.0043, 16) });
@@ -155,10 +158,10 @@ fn steps<S: Real + bytemuck::Pod>(case: &Case) -> Result<StepRow, Box<dyn Error>
         fluid: rank.fluid.owned(),
         particles,
         steps,
-        entries: 0.5 * visits / updates,
+        neighbors: 0.5 * visits / updates,
         fluid_updates: updates / spent.core,
-        all_updates: steps as f64 * particles as f64 / spent.core,
-        entry_visits: visits / spent.core,
+        layer_updates: (updates + (steps * dam.layer()) as f64) / spent.core,
+        visits: visits / spent.core,
         seconds_per_step: spent.wall / steps as f64,
         cores_had: spent.core / spent.wall,
         density_share: seconds(0) / spent.wall,

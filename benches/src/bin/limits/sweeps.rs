@@ -12,9 +12,9 @@ use std::error::Error;
 /// sweep. A convention, for comparison with other codes; divisions and roots count as one.
 const FLOPS_PER_PAIR: f64 = 60.0;
 
-/// Skin of the lists in support radii: rates are of pairs within the support, but a sweep works on
-/// every entry.
-const SKIN: f64 = 0.1;
+/// Skin of the lists in support radii, as in the solver: rates are of pairs within the support, but a
+/// sweep works on every lane.
+const SKIN: f64 = 0.15;
 
 /// Rates of the sweeps on one case.
 #[derive(Debug, Serialize)]
@@ -27,20 +27,17 @@ pub struct SweepRow {
     pub support: f64,
     /// Mean number of neighbours within the support radius.
     pub neighbors: f64,
-    /// Mean number of list entries, skin included, padding excluded.
-    pub entries: f64,
+    /// Mean number of lanes that are computed for a particle: pairs, and what is beyond the support
+    /// but near another particle of the cluster or in the skin.
+    pub lanes: f64,
     /// Density sweep: pairs within the support visited per core second.
     pub density_visits: f64,
     /// Force sweep: the same.
     pub force_visits: f64,
     /// δ-SPH pairs (a visit in both sweeps) per core second.
     pub pairs: f64,
-    /// The same with all list entries as pairs.
-    pub entry_pairs: f64,
     /// 60 operations per δ-SPH pair / peak of multiply-adds in this precision.
     pub peak_fraction: f64,
-    /// The same with all list entries as pairs.
-    pub entry_peak_fraction: f64,
     /// Wall time with one thread / with two.
     pub two_threads: f64,
 }
@@ -87,20 +84,18 @@ fn case<S: Real>(
     let middle = |of: &dyn Fn(f64, (Spent, Spent), (Spent, Spent)) -> f64| {
         median(rounds.iter().map(|&(peak, one, two)| of(peak, one, two)))
     };
-    let (pairs, entries) = (case.true_pairs as f64, case.list.pairs() as f64);
+    let pairs = case.true_pairs as f64;
     let both = |(density, force): (Spent, Spent)| density.core + force.core;
     Ok(SweepRow {
         precision,
         particles: case.len(),
         support,
         neighbors: pairs / case.len() as f64,
-        entries: entries / case.len() as f64,
+        lanes: case.list.lanes() as f64 / case.len() as f64,
         density_visits: middle(&|_, one, _| pairs / one.0.core),
         force_visits: middle(&|_, one, _| pairs / one.1.core),
         pairs: middle(&|_, one, _| pairs / both(one)),
-        entry_pairs: middle(&|_, one, _| entries / both(one)),
         peak_fraction: middle(&|peak, one, _| FLOPS_PER_PAIR * pairs / both(one) / peak),
-        entry_peak_fraction: middle(&|peak, one, _| FLOPS_PER_PAIR * entries / both(one) / peak),
         two_threads: middle(&|_, one, two| (one.0.wall + one.1.wall) / (two.0.wall + two.1.wall)),
     })
 }
