@@ -21,8 +21,8 @@ pub use comm::{
 pub use halo::{Halo, HaloPlan, PlanError};
 pub use migrate::{MigrateError, MigrationReport, migrate};
 pub use partition::{
-    Balancer, Evenness, HilbertCurve, Imbalance, Load, Orb, Partition, PartitionError, Rebalance,
-    Review,
+    Askew, Balancer, Evenness, HilbertCurve, Imbalance, Load, Orb, Partition, PartitionError,
+    Rebalance, Review,
 };
 pub use parts::Parts;
 pub use statistics::RankStatistics;

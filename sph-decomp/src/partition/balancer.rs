@@ -42,8 +42,7 @@ pub struct Evenness {
 /// Decides at rebuilds whether to divide the particles anew, and with which weights.
 ///
 /// The weight of a particle is its predicted cost times the *rate* of its rank: measured seconds
-/// per predicted cost, relative to the mean of all ranks and smoothed exponentially over the
-/// rebuilds, so that a slow processor or a poor prediction shows and a disturbance does not. The
+/// per predicted cost, relative to the mean of all ranks and smoothed exponentially in time, so that a slow processor or a poor prediction shows and a disturbance does not. The
 /// particles are divided anew when the imbalance of predicted cost times rate exceeds a threshold,
 /// with the hysteresis of [`Rebalance`].
 ///
@@ -58,7 +57,7 @@ pub struct Evenness {
 ///     assert!(balancer.review(&comm, Load::default())?.divide);
 ///     // Even by prediction, but rank 1 takes three times as long.
 ///     let seconds = if comm.rank() == 1 { 0.03 } else { 0.01 };
-///     balancer.review(&comm, Load { predicted: 100.0, seconds, steps: 10 })
+///     balancer.review(&comm, Load { predicted: 100.0, seconds, steps: 20 })
 /// });
 /// let [fast, slow] = reviews?[..] else { panic!("two ranks") };
 /// assert!(fast.divide && slow.divide && slow.rate > 1.1 && fast.rate < 0.9);
@@ -92,8 +91,8 @@ impl Mean {
     }
 }
 
-/// Share of a new measurement in the smoothed rate: one rebuild in five counts.
-const NEW: f64 = 0.2;
+/// Steps after which a measurement counts 1/e: a time of few steps is noisier than one of many.
+const MEMORY: f64 = 50.0;
 
 /// Rates are believed within this factor. A rank with a handful of particles spends its time on
 /// anything but them, and must not take their cost for a thousand times that of others.
@@ -158,12 +157,13 @@ impl Balancer {
         let (cost, time) = (predicted.iter().sum::<f64>(), seconds.iter().sum::<f64>());
         if steps > 0 && cost > 0.0 && time > 0.0 {
             self.measured.add(Imbalance::of(&seconds).ratio(), steps);
+            let new = 1.0 - (-(steps as f64) / MEMORY).exp();
             for (rate, load) in self.rates.iter_mut().zip(loads) {
                 // An empty rank has nothing to measure and keeps what is known of it.
                 if load.predicted > 0.0 && load.seconds > 0.0 {
                     let measured = load.seconds / load.predicted * (cost / time);
                     let measured = measured.clamp(1.0 / CREDIBLE, CREDIBLE);
-                    *rate += NEW * (measured - *rate);
+                    *rate += new * (measured - *rate);
                 }
             }
         }
@@ -180,7 +180,7 @@ mod tests {
     use crate::Solo;
 
     fn loads(predicted: &[f64], seconds: &[f64]) -> Vec<Load> {
-        let load = |(&predicted, &seconds)| Load { predicted, seconds, steps: 5 };
+        let load = |(&predicted, &seconds)| Load { predicted, seconds, steps: 10 };
         predicted.iter().zip(seconds).map(load).collect()
     }
 
@@ -206,14 +206,18 @@ mod tests {
             assert!(!balancer.consider(&calm));
         }
         assert!(!balancer.consider(&slow), "once is a disturbance");
-        assert!((0..8).any(|_| balancer.consider(&slow)), "always is a slow rank");
+        assert!((0..12).any(|_| balancer.consider(&slow)), "always is a slow rank");
         let exact = 1.5 * 40.0 / 45.0;
-        (0..40).for_each(|_| drop(balancer.consider(&slow)));
+        for _ in 0..40 {
+            balancer.consider(&slow);
+        }
         assert!((balancer.rates[3] - exact).abs() < 1e-3, "{:?}", balancer.rates);
         // Now the particles of rank 3 weigh more, so it gets fewer of them.
         let share = [10.0, 10.0, 10.0, 10.0 / 1.5];
         let even = loads(&share, &[1.0; 4]);
-        (0..20).for_each(|_| drop(balancer.consider(&even)));
+        for _ in 0..20 {
+            balancer.consider(&even);
+        }
         assert!(!balancer.consider(&even));
     }
 

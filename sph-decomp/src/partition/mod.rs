@@ -1,5 +1,6 @@
 //! Who owns which part of space.
 
+mod askew;
 mod balance;
 mod balancer;
 mod hilbert;
@@ -7,6 +8,7 @@ mod orb;
 mod splitters;
 mod weights;
 
+pub use askew::Askew;
 pub use balance::{Imbalance, Rebalance};
 pub use balancer::{Balancer, Evenness, Load, Review};
 pub use hilbert::HilbertCurve;

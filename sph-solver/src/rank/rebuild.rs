@@ -11,7 +11,7 @@ use crate::team::Team;
 use crate::terms::Acceleration;
 use bytemuck::Pod;
 use sph_decomp::{
-    Communicator, Halo, HaloPlan, MaxReach, Orb, Partition, Parts, Reach, Zone, ZoneOptions,
+    Askew, Communicator, Halo, HaloPlan, MaxReach, Orb, Partition, Parts, Reach, Zone, ZoneOptions,
     migrate,
 };
 use sph_kernels::Real;
@@ -20,26 +20,30 @@ use sph_neighbors::{CellList, Grid, NeighborList};
 /// List entries are padded to this many, the widest lanes in use.
 const PAD: usize = 8;
 
-/// Cost of a wall particle, in pairs: it is only stored, sorted and sent.
-const WALL_COST: f64 = 4.0;
+/// Cost of a wall particle, in pairs: no sweep visits it as a target. It is stored, sorted and
+/// sent at rebuilds, so that a rank is not left with all the walls of a dry half for nothing.
+const WALL_COST: f64 = 0.5;
 /// Cost of a fluid particle besides its neighbours, in pairs.
 const FLUID_COST: f64 = 20.0;
+/// Neighbours of a fluid particle before there are lists.
+const USUAL_NEIGHBOURS: usize = 90;
 
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Brings the particles to their owners, finds the overlap zone, sorts, and builds the lists.
-    /// Returns the particles that have left the domain; they are gone. Collective.
+    /// Returns the particles that have left the domain; they are gone. With `division`, space is
+    /// divided anew, and the particles of this rank weigh that many times their cost. Collective.
     pub fn rebuild(
         &mut self,
         comm: &dyn Communicator,
         team: &Team,
         model: &Model<D>,
         has_walls: bool,
-        rebalance: bool,
+        division: Option<f64>,
     ) -> Result<Vec<(u64, [f64; D])>, RunError> {
         let gone = self.remove_outside(model);
         let grid = Grid::new(model.domain.0, model.reach())?;
         if comm.size() > 1 {
-            self.send_home(comm, rebalance)?;
+            self.send_home(comm, division)?;
         }
         let reach = Reach::Uniform(model.reach());
         let options = ZoneOptions::default();
@@ -73,28 +77,43 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     }
 
     /// Sends every particle to the rank that owns its place.
-    fn send_home(&mut self, comm: &dyn Communicator, rebalance: bool) -> Result<(), RunError> {
-        if rebalance || self.partition.is_none() {
-            let costs = self.costs();
-            self.partition = Some(Orb::build(&comm, &self.state.position, &costs)?);
+    fn send_home(
+        &mut self,
+        comm: &dyn Communicator,
+        division: Option<f64>,
+    ) -> Result<(), RunError> {
+        if let Some(rate) = division {
+            let weights: Vec<f64> = self.costs().iter().map(|cost| rate * cost).collect();
+            let positions = Askew::view(&self.state.position);
+            self.partition = Some(Askew::new(Orb::build(&comm, &positions, &weights)?));
         }
         if let Some(partition) = &self.partition {
-            let owners: Vec<u32> =
-                self.state.position.iter().map(|x| partition.owner(x) as u32).collect();
+            let owners = partition.owners(&self.state.position);
             migrate(&comm, &owners, &mut self.state.columns())?;
         }
         Ok(())
     }
 
-    /// Cost of each owned particle, in pairs: measured list lengths once there are lists. Particles
-    /// that were just taken out shift the rest, which blurs the estimate a little.
+    /// Cost of each owned particle in one step, in pairs: the lengths of its lists once there are
+    /// lists. Particles that were just taken out shift the rest, which blurs the estimate a little.
     fn costs(&self) -> Vec<f64> {
         let pairs = |list: &NeighborList, i| if i < list.len() { list.count(i) } else { 0 };
+        let neighbours = |i: usize| match self.near_fluid.is_empty() {
+            true => USUAL_NEIGHBOURS,
+            false => pairs(&self.near_fluid, i) + pairs(&self.near_walls, i),
+        };
         let cost = |i: usize| match self.state.kind[i] {
-            FLUID => FLUID_COST + (pairs(&self.near_fluid, i) + pairs(&self.near_walls, i)) as f64,
+            FLUID => FLUID_COST + neighbours(i) as f64,
             _ => WALL_COST,
         };
         (0..self.state.len()).map(cost).collect()
+    }
+
+    /// Sum of the costs of the owned particles with the present lists; 0 before there are lists.
+    pub fn predicted_cost(&self) -> f64 {
+        let pairs = self.near_fluid.pairs() + self.near_walls.pairs();
+        let (fluid, solid) = (self.fluid.owned() as f64, self.solid.owned() as f64);
+        FLUID_COST * fluid + WALL_COST * solid + pairs as f64
     }
 
     /// Order of the owned particles: class, then local before inner, then cell, then id.
