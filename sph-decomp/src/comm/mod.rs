@@ -5,6 +5,7 @@ mod build;
 pub(crate) mod clock;
 mod error;
 mod mailbox;
+mod meeting;
 mod metered;
 #[cfg(feature = "mpi")]
 mod mpi;
