@@ -59,6 +59,26 @@ fn pairs_are_even_over_a_dam_break_in_space() {
     check(&SOLID, 350);
 }
 
+/// Ranks that wait for each other in every step do not scale: only rebuilds have blocking operations.
+#[test]
+fn a_step_without_a_rebuild_has_no_blocking_operation() {
+    let calls = ThreadRanks::run(3, |comm| {
+        let mut simulation = FLAT.simulation::<f32>(&comm, 1)?;
+        let mut calls = Vec::new();
+        for _ in 0..60 {
+            let before = simulation.collectives().calls;
+            simulation.step(false)?;
+            calls.push((simulation.just_rebuilt(), simulation.collectives().calls - before));
+        }
+        Ok::<_, RunError>(calls)
+    });
+    for calls in calls.expect("the run succeeds") {
+        assert!(calls.iter().all(|&(rebuilt, calls)| rebuilt == (calls > 0)), "{calls:?}");
+        let rebuilds = calls.iter().filter(|(rebuilt, _)| *rebuilt).count();
+        assert!((2..50).contains(&rebuilds), "{rebuilds} rebuilds in 60 steps");
+    }
+}
+
 #[test]
 fn one_rank_is_not_balanced() {
     let mut simulation = FLAT.simulation::<f32>(&Solo, 1).expect("a simulation");
