@@ -57,18 +57,13 @@ impl Atoms {
         let (id, x) = (&mut self.id, &mut self.x);
         id.extend_from_slice(Halo::new().exchange_now(comm, &self.plan, |i| id[i as usize])?);
         x.extend_from_slice(Halo::new().exchange_now(comm, &self.plan, |i| x[i as usize])?);
-        self.neighbours = self.find_neighbours();
-        Ok(())
-    }
-
-    /// For each owned atom the atoms within cutoff and skin, in the order of their ids, which is the
-    /// same on any number of ranks. A toy may look at all pairs.
-    fn find_neighbours(&self) -> Vec<Vec<u32>> {
+        // In the order of ids, the same on any number of ranks. A toy may look at all pairs.
         let mut by_id: Vec<u32> = (0..self.id.len() as u32).collect();
         by_id.sort_by_key(|&j| self.id[j as usize]);
         let near = |i: usize, j| j as usize != i && self.pair(i, j).0 < (CUTOFF + SKIN).powi(2);
         let list = |i| by_id.iter().copied().filter(|&j| near(i, j)).collect();
-        (0..self.parts.owned()).map(list).collect()
+        self.neighbours = (0..parts.owned()).map(list).collect();
+        Ok(())
     }
 
     /// Square of the distance of two atoms, and the vector between them.
@@ -112,8 +107,7 @@ fn simulate<C: Communicator>(comm: &C) -> Result<([f64; 2], usize), Failure> {
             (rebuilds, moved) = (rebuilds + 1, 0.0);
         }
         let (parts, plan) = (atoms.parts, &atoms.plan);
-        let speed = |v: &[f64; 2]| v[0].hypot(v[1]);
-        let mut fastest = [atoms.v.iter().map(speed).fold(0.0, f64::max)];
+        let mut fastest = [atoms.v.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max)];
         let mut forces = Vec::with_capacity(parts.owned());
         let (received, _) = halo.exchange(
             comm,
@@ -151,8 +145,7 @@ fn main() -> Result<(), Failure> {
     let mut first = None;
     for ranks in [1, 2, 6] {
         let results = ThreadRanks::run(ranks, |comm| simulate(&comm)).map_err(|e| e.to_string())?;
-        let (energies, rebuilds) = results[0];
-        let [start, end] = energies;
+        let ([start, end], rebuilds) = results[0];
         println!("{ranks} ranks: energy {start:.9} → {end:.9}, {rebuilds} rebuilds");
         assert_eq!(*first.get_or_insert(results[0]), results[0], "the same bits");
         assert!((end - start).abs() < 2e-3 * start.abs(), "energy is conserved");

@@ -86,5 +86,5 @@ fn one_rank_is_not_balanced() {
         simulation.step(false).expect("a step");
     }
     let evenness = simulation.evenness();
-    assert_eq!((evenness.predicted, evenness.partitions), (1.0, 1));
+    assert_eq!((evenness.predicted, evenness.partitions), (1.0, 0));
 }

@@ -31,7 +31,7 @@ impl<C: Communicator> Blocking<C> {
 }
 
 /// Nothing is in flight any more.
-struct Landed<'a>(&'a Cell<u32>);
+struct Landed<'a>(&'a Cell<u64>);
 
 impl Progress for Landed<'_> {
     fn poll(&mut self) {

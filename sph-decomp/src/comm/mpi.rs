@@ -289,7 +289,7 @@ struct Flight<'s, 'a> {
     /// The first so many requests are receptions.
     receptions: usize,
     done: Vec<(usize, Status, &'a [u8])>,
-    polls: u32,
+    polls: u64,
     error: Option<CommError>,
 }
 

@@ -312,7 +312,7 @@ struct Arrivals<'a> {
     wanted: Vec<(usize, Range<usize>)>,
     /// Whether the reduction is still to come.
     reduces: bool,
-    polls: u32,
+    polls: u64,
     error: Option<CommError>,
 }
 

@@ -82,9 +82,9 @@ pub struct Exposed {
     /// Bytes sent to other ranks.
     pub bytes_sent: u64,
     /// Messages sent to other ranks.
-    pub messages: u32,
+    pub messages: u64,
     /// How often the computation called [`Progress::poll`].
-    pub polls: u32,
+    pub polls: u64,
 }
 
 impl AddAssign for Exposed {

@@ -35,7 +35,7 @@ pub struct Evenness {
     pub predicted: f64,
     /// Mean of largest over mean measured seconds; `None` when nothing was measured.
     pub measured: Option<f64>,
-    /// How often the particles were divided.
+    /// How often the particles were divided; never on one rank.
     pub partitions: u64,
 }
 
@@ -119,7 +119,6 @@ impl Balancer {
             if load.seconds > 0.0 {
                 self.measured.add(1.0, load.steps);
             }
-            self.partitions = 1;
             return Ok(Review { divide: false, rate: 1.0 });
         }
         let mut loads = Vec::with_capacity(comm.size());
@@ -192,7 +191,7 @@ mod tests {
             let review = balancer.review(&Solo, load);
             assert_eq!(review, Ok(Review { divide: false, rate: 1.0 }));
         }
-        let evenness = Evenness { predicted: 1.0, measured: None, partitions: 1 };
+        let evenness = Evenness { predicted: 1.0, measured: None, partitions: 0 };
         assert_eq!(balancer.evenness(), evenness);
     }
 

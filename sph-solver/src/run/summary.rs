@@ -184,7 +184,7 @@ where
         rank.bytes() as u64,
         fluid.outer as u64,
         rank.near_fluid.pairs() + rank.near_walls.pairs(),
-        u64::from(exposed.messages),
+        exposed.messages,
         exposed.bytes_sent,
     ];
     comm.sum_u64(&mut counts)?;
