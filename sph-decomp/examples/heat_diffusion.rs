@@ -42,14 +42,8 @@ fn diffuse<C: Communicator>(comm: &C) -> Result<Report, Failure> {
     // Who owns what, and who needs what of it.
     let owners = Orb::build(comm, &positions, &[])?.owners(&positions);
     migrate(comm, &owners, &mut (&mut ids, &mut positions, &mut reach))?;
-    let zone = Zone::build(
-        comm,
-        &positions,
-        Reach::PerParticle(&reach),
-        MeanReach,
-        &ZoneOptions::default(),
-    )?;
-    let mut plan = zone.into_plan(comm)?;
+    let (sees, options) = (Reach::PerParticle(&reach), ZoneOptions::default());
+    let mut plan = Zone::build(comm, &positions, sees, MeanReach, &options)?.into_plan(comm)?;
 
     // The order [local | inner | outer].
     let (parts, order) = Parts::arrange(ids.len(), &plan, |i| ids[i as usize]);
@@ -139,16 +133,9 @@ fn main() -> Result<(), Failure> {
         for report in ThreadRanks::run(ranks, |comm| diffuse(&comm)).map_err(|e| e.to_string())? {
             let RankStatistics { rank, local, inner, outer, exposed_seconds, .. } =
                 report.statistics;
-            println!(
-                "  rank {rank}: {local} local, {inner} inner, {outer} outer, {exposed_seconds:.4} s exposed"
-            );
-            let one = first.get_or_insert_with(|| {
-                println!(
-                    "  heat {} → {}, hottest {}",
-                    report.heat[0], report.heat[1], report.hottest
-                );
-                Report { ..report }
-            });
+            print!("  rank {rank}: {local} local, {inner} inner, {outer} outer, ");
+            println!("{exposed_seconds:.4} s exposed, heat {:?}", report.heat);
+            let one = first.get_or_insert(Report { ..report });
             assert_eq!((one.heat, one.hottest), (report.heat, report.hottest), "the same bits");
             assert!((report.heat[1] / report.heat[0] - 1.0).abs() < 1e-12, "heat is conserved");
             assert!(report.hottest < 1.0, "heat spreads");

@@ -15,12 +15,15 @@ pub use columns::{ColumnError, Columns};
 #[cfg(feature = "mpi")]
 pub use comm::Mpi;
 pub use comm::{
-    CommError, Communicator, Exposed, Operation, Part, Progress, RanksError, Solo, ThreadRank,
-    ThreadRanks, Traffic, check_same_build,
+    Blocking, Collectives, CommError, Communicator, Exposed, Metered, Operation, Part, Progress,
+    RanksError, Solo, ThreadRank, ThreadRanks, Traffic, check_same_build,
 };
 pub use halo::{Halo, HaloPlan, PlanError};
 pub use migrate::{MigrateError, MigrationReport, migrate};
-pub use partition::{HilbertCurve, Imbalance, Orb, Partition, PartitionError, Rebalance};
+pub use partition::{
+    Askew, Balancer, Evenness, HilbertCurve, Imbalance, Load, Orb, Partition, PartitionError,
+    Rebalance, Review,
+};
 pub use parts::Parts;
 pub use statistics::RankStatistics;
 pub use sums::{ExactSum, global_ranges, global_sums};

@@ -74,7 +74,7 @@ impl RankStatistics {
     /// Adds one pass.
     pub fn pass(&mut self, exposed: &Exposed) {
         self.passes += 1;
-        self.messages += u64::from(exposed.messages);
+        self.messages += exposed.messages;
         self.bytes_sent += exposed.bytes_sent;
         self.exposed_seconds += exposed.wait_seconds;
     }

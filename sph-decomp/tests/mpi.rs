@@ -10,9 +10,9 @@ use std::process::{Command, Output};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use common::scenario;
+use common::{graded, scenario};
 use sph_decomp::{
-    CommError, Communicator, Mpi, Part, Progress, ThreadRanks, Traffic, check_same_build,
+    CommError, Communicator, Mpi, Part, Progress, Solo, ThreadRanks, Traffic, check_same_build,
 };
 
 const TASK: &str = "SPH_DECOMP_MPI_TASK";
@@ -72,6 +72,13 @@ fn fails(ranks: usize, task: &str, message: &str) {
 fn the_same_bits_as_thread_ranks() {
     for ranks in 1..=4 {
         succeeds(ranks, "scenario");
+    }
+}
+
+#[test]
+fn graded_reaches_with_rebalancing_give_the_bits_of_one_rank() {
+    for ranks in [2, 3, 5, 8] {
+        succeeds(ranks, "graded");
     }
 }
 
@@ -147,6 +154,23 @@ fn rank(mpi: &Mpi, task: &str) -> Outcome {
     match task {
         "scenario" => same_as_threads(mpi),
         "collectives" => collectives(mpi),
+        "graded" => {
+            let mine = graded::run(mpi)?;
+            let all = mpi.all_gather(bytemuck::cast_slice(&mine.state))?;
+            let mut pairs = [mine.pairs];
+            mpi.sum_u64(&mut pairs)?;
+            if mpi.rank() == 0 {
+                let alone = graded::run(&Solo)?;
+                let all = all.concat();
+                let words = all.chunks_exact(24).map(bytemuck::pod_read_unaligned::<[u64; 3]>);
+                let mut state: Vec<[u64; 3]> = words.collect();
+                state.sort_unstable();
+                assert!(state == alone.state, "other bits than one rank");
+                assert_eq!(pairs[0], alone.pairs, "a pair was computed twice or never");
+                assert!(mine.evenness.partitions > 2, "{:?}", mine.evenness);
+            }
+            Ok(())
+        }
         "pieces" => {
             collectives(mpi)?;
             same_as_threads(mpi)

@@ -5,8 +5,8 @@ mod common;
 use common::{Cloud, clouds, random};
 use proptest::prelude::*;
 use sph_decomp::{
-    Communicator, HilbertCurve, MigrateError, Orb, Partition, PartitionError, Solo, ThreadRanks,
-    migrate,
+    Askew, Communicator, HilbertCurve, MigrateError, Orb, Partition, PartitionError, Solo,
+    ThreadRanks, migrate,
 };
 
 /// Owners of all particles, computed on `ranks` ranks that hold particle `i` on rank `holder(i)`.
@@ -123,6 +123,41 @@ fn regions_divide_space_as_owners_do() {
             };
             let holders: Vec<usize> = (0..ranks).filter(|&r| holds(&regions[r])).collect();
             assert_eq!(holders, [orb.owner(&x)], "{x:?}");
+        }
+    }
+}
+
+#[test]
+fn whoever_comes_near_is_named() {
+    let mut random = random(11);
+    let mut point = || [random(), random(), random()];
+    let positions: Vec<[f64; 3]> = (0..300).map(|_| point()).collect();
+    let partitions = ThreadRanks::run(13, |comm| {
+        let mine = if comm.rank() == 0 { &positions[..] } else { &[] };
+        let straight = Orb::build(&comm, mine, &[])?;
+        let askew = Askew::new(Orb::build(&comm, &Askew::view(mine), &[])?);
+        Ok::<_, PartitionError>((straight, askew))
+    });
+    let (straight, askew) = partitions.unwrap().swap_remove(0);
+    let regions = straight.regions();
+    for _ in 0..300 {
+        let (x, reach) = (point(), 0.15);
+        let (mut near, mut near_askew) = (vec![], vec![]);
+        straight.within(&x, reach, |rank| near.push(rank));
+        askew.within(&x, reach, |rank| near_askew.push(rank));
+        near.sort_unstable();
+        let gap = |(low, high): &([f64; 3], [f64; 3])| {
+            (0..3).map(|k| (low[k] - x[k]).max(x[k] - high[k]).max(0.0).powi(2)).sum::<f64>()
+        };
+        let expected: Vec<usize> =
+            (0..13).filter(|&rank| gap(&regions[rank]) < reach * reach).collect();
+        assert_eq!(near, expected);
+        assert!(near.len() < 13 && near_askew.len() < 13, "not simply all");
+        for y in &positions {
+            let distance2: f64 = (0..3).map(|k| (x[k] - y[k]).powi(2)).sum();
+            if distance2 < reach * reach {
+                assert!(near_askew.contains(&askew.owner(y)));
+            }
         }
     }
 }

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use sph_decomp::{
-    CommError, Communicator, Halo, HaloPlan, Part, PlanError, RanksError, Solo, ThreadRanks,
-    Traffic,
+    Blocking, CommError, Communicator, Exposed, Halo, HaloPlan, Metered, Part, PlanError,
+    RanksError, Solo, ThreadRank, ThreadRanks, Traffic,
 };
 
 /// A plan in which every rank sends its particles 0 and 1 to the next rank.
@@ -178,4 +178,118 @@ fn bad_traffic_is_refused() {
     assert_eq!(overlap(&[(0, 0..8)]), CommError::WrongLength { rank: 0, got: 8, expected: 0 });
     let twice = Solo.exchange_some(vec![(0, vec![1]), (0, vec![2])]);
     assert_eq!(twice, Err(CommError::TwoMessages { rank: 0 }));
+}
+
+/// Whatever the others wait in, they learn of a rank that dies, at once and with its words.
+#[test]
+fn a_rank_that_dies_wakes_the_others_from_every_operation() {
+    type Wait = fn(&ThreadRank) -> Result<(), CommError>;
+    let waits: [(&str, Wait); 6] = [
+        ("sum_u64", |comm| comm.sum_u64(&mut [1])),
+        ("max_f64", |comm| comm.max_f64(&mut [1.0])),
+        ("all_gather", |comm| comm.all_gather(&[1]).map(drop)),
+        ("exchange_some", |comm| comm.exchange_some(vec![]).map(drop)),
+        ("a pass with a reduction", |comm| {
+            let plan = HaloPlan::empty();
+            Halo::<u64>::new().exchange(comm, &plan, &mut [0.0], |_| (), |_| ()).map(drop)
+        }),
+        ("a pass with messages", |comm| {
+            let (send, receive) = (&mut [0; 4], &mut [0; 4]);
+            let other = (comm.rank() + 2) % 4;
+            let part = [Part { rank: other, bytes: 0..4 }];
+            let (send_parts, receive_parts) = (&part, &part);
+            let traffic = Traffic { send, send_parts, receive, receive_parts, maxima: &mut [] };
+            comm.overlap(traffic, &mut |_| (), &mut |progress| progress.poll()).map(drop)
+        }),
+    ];
+    for (name, wait) in waits {
+        for panics in [false, true] {
+            let start = Instant::now();
+            let result = ThreadRanks::run(4, |comm| {
+                comm.sum_u64(&mut [1])?;
+                if comm.rank() == 2 {
+                    std::thread::sleep(Duration::from_millis(20));
+                    assert!(!panics, "the bottom fell out");
+                    return Err(CommError::Mpi("the bottom fell out".to_string()));
+                }
+                wait(&comm)?;
+                // Ranks 1 and 3 need nothing of rank 2 in a pass; here they do.
+                comm.max_f64(&mut [0.0])
+            });
+            let error = result.expect_err(name);
+            match &error {
+                RanksError::Failed { rank: 2, error: CommError::Mpi(_) } => assert!(!panics),
+                RanksError::Panicked { rank: 2, .. } => assert!(panics),
+                other => panic!("{name}: {other}"),
+            }
+            assert!(error.to_string().contains("the bottom fell out"), "{name}: {error}");
+            assert!(start.elapsed() < Duration::from_secs(20), "{name}");
+        }
+    }
+}
+
+#[test]
+fn unequal_reductions_are_an_error() {
+    let result = ThreadRanks::run(2, |comm| comm.sum_u64(&mut vec![0; 1 + comm.rank()]));
+    let text = result.expect_err("they do not fit").to_string();
+    assert!(text.contains("sent 8 bytes where 16") || text.contains("sent 16 bytes where 8"));
+}
+
+#[test]
+fn a_pass_without_overlap_gives_the_same() {
+    let result = ThreadRanks::run(3, |comm| {
+        let plan = ring(&comm)?;
+        let blocking = Blocking::new(&comm);
+        let run = |comm: &dyn Communicator| {
+            let (mut halo, mut largest) = (Halo::<u64>::new(), [comm.rank() as f64]);
+            // In the local part everything has arrived already, or it may still be on its way.
+            let (received, exposed) = halo.exchange(
+                &comm,
+                &plan,
+                &mut largest,
+                |send| plan.pack(send, |i| 10 * comm.rank() as u64 + u64::from(i)),
+                |progress| (0..5).for_each(|_| progress.poll()),
+            )?;
+            let Exposed { bytes_sent, messages, polls, .. } = exposed;
+            Ok::<_, CommError>((received.to_vec(), largest, bytes_sent, messages, polls))
+        };
+        let overlapped = run(&comm)?;
+        assert_eq!(overlapped, run(&blocking)?);
+        assert_eq!((overlapped.1, overlapped.4), ([2.0], 5));
+        Ok::<_, CommError>(())
+    });
+    assert_eq!(result, Ok(vec![(); 3]));
+}
+
+#[test]
+fn the_work_of_a_pass_is_told_apart_from_its_waiting() {
+    let result = ThreadRanks::run(2, |comm| {
+        let comm = Metered::new(comm);
+        let plan = HaloPlan::new(&comm, vec![(1 - comm.rank(), vec![0])])?;
+        let pause = Duration::from_millis(if comm.rank() == 0 { 60 } else { 0 });
+        let mut halo = Halo::<u64>::new();
+        let (_, exposed) =
+            halo.exchange(&comm, &plan, &mut [], |_| std::thread::sleep(pause), |_| ())?;
+        // Rank 1 waits for rank 0, which sleeps in its inner part and has no core meanwhile.
+        let (waits, works) = (exposed.wait_seconds, exposed.work_seconds);
+        assert!(if comm.rank() == 0 { works > waits } else { waits > works }, "{exposed:?}");
+        assert!(exposed.thread_seconds <= works + 1e-3, "{exposed:?}");
+        assert_eq!(comm.collectives().calls, 1, "the plan, but not the pass");
+        Ok::<_, CommError>(())
+    });
+    assert_eq!(result, Ok(vec![(); 2]));
+}
+
+/// A rank that announces more particles than can be numbered is named, before any memory is taken.
+#[test]
+fn absurd_numbers_of_outer_particles_are_refused() {
+    let result = ThreadRanks::run(2, |comm| match comm.rank() {
+        // What a plan sends: the number of particles, in eight bytes.
+        0 => {
+            comm.exchange_some(vec![(1, u64::from(u32::MAX).wrapping_add(2).to_ne_bytes().into())])
+        }
+        _ => HaloPlan::new(&comm, vec![]).map(|_| vec![]),
+    });
+    let text = result.expect_err("they cannot be numbered").to_string();
+    assert!(text.contains("rank 0 is about to send 4294967297 particles"), "{text}");
 }

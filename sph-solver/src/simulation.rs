@@ -12,7 +12,7 @@ use crate::terms::Acceleration;
 use crate::timestep::Skin;
 use crate::timings::{Phase, Timings};
 use bytemuck::Pod;
-use sph_decomp::{Communicator, Exposed};
+use sph_decomp::{Balancer, Collectives, Communicator, Evenness, Exposed, Load, Metered};
 use sph_kernels::{Kernel, Real};
 use std::marker::PhantomData;
 
@@ -76,7 +76,7 @@ pub struct Counters {
 
 /// One rank of a run.
 pub struct Simulation<'a, const D: usize, S: Real, K, P> {
-    comm: &'a dyn Communicator,
+    comm: Metered<&'a dyn Communicator>,
     team: Team,
     model: Model<D>,
     physics: P,
@@ -90,6 +90,10 @@ pub struct Simulation<'a, const D: usize, S: Real, K, P> {
     lost: Vec<Lost<D>>,
     counters: Counters,
     exposed: Exposed,
+    balancer: Balancer,
+    by_prediction: bool,
+    /// Steps and exposed communication at the last rebuild.
+    at_rebuild: (u64, Exposed),
     timings: Timings,
     kernel: PhantomData<K>,
 }
@@ -120,7 +124,7 @@ where
         };
         let skin = Skin::new(model.skin);
         Ok(Self {
-            comm,
+            comm: Metered::new(comm),
             team,
             physics,
             rank: Rank::new(state),
@@ -132,6 +136,9 @@ where
             lost: Vec::new(),
             counters: Counters::default(),
             exposed: Exposed::default(),
+            balancer: Balancer::new(TOLERATED_IMBALANCE),
+            by_prediction: false,
+            at_rebuild: (0, Exposed::default()),
             timings: Timings::default(),
             model,
             kernel: PhantomData,
@@ -204,6 +211,23 @@ where
         self.exposed
     }
 
+    /// Blocking operations of this rank in steps and rebuilds, those of outputs left out.
+    pub fn collectives(&self) -> Collectives {
+        self.comm.collectives()
+    }
+
+    /// How evenly the ranks were loaded from the first rebuild to the last, and how often space was
+    /// divided. The same on all ranks.
+    pub fn evenness(&self) -> Evenness {
+        self.balancer.evenness()
+    }
+
+    /// From now on particles are weighed by their lists alone, without measured seconds: the
+    /// partitions then do not depend on clocks. Call it on all ranks.
+    pub fn weigh_by_prediction(&mut self) {
+        self.by_prediction = true;
+    }
+
     /// Seconds by phase on this rank.
     pub fn timings(&self) -> &Timings {
         &self.timings
@@ -247,15 +271,16 @@ where
         let _timer = self.timings.measure(Phase::Rebuild);
         // A particle without a usable position is a fault, not one that has left the domain.
         self.clock()?;
-        let rebalance = self.counters.rebuilds.is_multiple_of(REBUILDS_PER_BALANCE);
-        let encoder = self.model.encoder::<K>();
-        let (comm, team, model) = (self.comm, &self.team, &self.model);
-        let gone = self.rank.rebuild(comm, team, model, &encoder, P::has_walls(), rebalance)?;
+        let gone = self.renew_rank()?;
+        if self.counters.rebuilds == 0 && self.comm.size() > 1 {
+            // Now there are lists, from which costs are better known than from nothing.
+            self.renew_rank()?;
+        }
         let time = self.clock.time;
         self.lost.extend(gone.iter().map(|&(id, position)| Lost { id, position, time }));
         if self.model.on_lost == OnLost::Stop {
             let first = gone.iter().min_by_key(|(id, _)| *id);
-            if let Some((id, position)) = first_of_all(self.comm, first)? {
+            if let Some((id, position)) = first_of_all(&self.comm, first)? {
                 let position = position.to_vec();
                 let (lower, upper) = self.model.domain;
                 let (lower, upper) = (lower.to_vec(), upper.to_vec());
@@ -266,6 +291,34 @@ where
         self.lists_due = false;
         self.counters.rebuilds += 1;
         Ok(())
+    }
+
+    /// Divides space anew if that is due, and brings the rank up to date. Returns the particles that
+    /// have left the domain.
+    fn renew_rank(&mut self) -> Result<Vec<(u64, [f64; D])>, RunError> {
+        let review = self.balancer.review(&self.comm, self.load())?;
+        let division = review.divide.then_some(review.rate);
+        let encoder = self.model.encoder::<K>();
+        let (comm, team, model) = (&self.comm, &self.team, &self.model);
+        let gone = self.rank.rebuild(comm, team, model, &encoder, P::has_walls(), division)?;
+        self.at_rebuild = (self.counters.steps, self.exposed);
+        Ok(gone)
+    }
+
+    /// What this rank did since the last rebuild.
+    fn load(&self) -> Load {
+        // With a team the calling thread only waits for it, and the wall clock has to do.
+        let sweeps = |exposed: &Exposed| match self.team.threads() {
+            _ if self.by_prediction => 0.0,
+            1 => exposed.thread_seconds,
+            _ => exposed.work_seconds,
+        };
+        let (steps, exposed) = &self.at_rebuild;
+        Load {
+            predicted: self.rank.predicted_cost(),
+            seconds: sweeps(&self.exposed) - sweeps(exposed),
+            steps: self.counters.steps - steps,
+        }
     }
 
     fn density_pass(&mut self) -> Result<Extremes, RunError> {
@@ -281,7 +334,7 @@ where
             kernel: PhantomData,
         };
         let exchange = Exchange {
-            comm: self.comm,
+            comm: &self.comm,
             halo: view.density_halo,
             plan: view.plan,
             maxima: &mut maxima,
@@ -313,7 +366,7 @@ where
             kernel: PhantomData,
         };
         let exchange =
-            Exchange { comm: self.comm, halo: view.force_halo, plan: view.plan, maxima: &mut [] };
+            Exchange { comm: &self.comm, halo: view.force_halo, plan: view.plan, maxima: &mut [] };
         let (own, exposed) = lio_pass(
             &pass,
             &self.team,
@@ -379,7 +432,7 @@ where
         }
         let density0 = self.model.equation_of_state.density0();
         let first = self.rank.faulty(self.model.speed_limit(), density0);
-        match first_of_all(self.comm, first.as_ref())? {
+        match first_of_all(&self.comm, first.as_ref())? {
             Some((id, position)) => Err(RunError::Diverged {
                 id,
                 position: position.to_vec(),
@@ -391,8 +444,9 @@ where
     }
 }
 
-/// Rebuilds between two partitions of space.
-const REBUILDS_PER_BALANCE: u64 = 20;
+/// Largest over mean cost of a rank that is tolerated beyond the best that a partition reaches. A
+/// new partition is cheap beside the rebuild that it is part of, so this is tight.
+const TOLERATED_IMBALANCE: f64 = 1.02;
 
 /// A step this much shorter than the acoustic one means that the run has failed.
 const SMALLEST_STEP: f64 = 1e-5;

@@ -19,6 +19,7 @@ static MPI_JOBS: Mutex<()> = Mutex::new(());
 pub struct Run {
     arguments: Vec<OsString>,
     processes: Option<(PathBuf, usize)>,
+    beside: Option<Box<Self>>,
     folder: Option<PathBuf>,
     patience: Duration,
 }
@@ -38,6 +39,7 @@ impl Run {
         Self {
             arguments: vec![name.into(), scene.as_ref().into()],
             processes: None,
+            beside: None,
             folder: None,
             patience: PATIENCE,
         }
@@ -96,6 +98,12 @@ impl Run {
         self.threads(1)
     }
 
+    /// In the same MPI job, as later ranks, another command line, as if it were by mistake.
+    pub fn beside(mut self, other: Self) -> Self {
+        self.beside = Some(Box::new(other));
+        self
+    }
+
     /// Runs in this working folder.
     pub fn within(mut self, folder: &Path) -> Self {
         self.folder = Some(folder.into());
@@ -128,6 +136,11 @@ impl Run {
             }
         };
         command.args(&self.arguments);
+        if let Some(Self { arguments, processes: Some((program, processes)), .. }) =
+            self.beside.as_deref()
+        {
+            command.args([":", "-n"]).arg(processes.to_string()).arg(program).args(arguments);
+        }
         if let Some(folder) = &self.folder {
             command.current_dir(folder);
         }

@@ -97,6 +97,24 @@ fn a_bad_scene_under_mpirun_is_refused_once() {
     assert!(!results.path().exists(), "files were written");
 }
 
+/// Ranks of one job that were started with different settings.
+#[test]
+fn ranks_with_different_settings_are_refused() {
+    let Some(program) = mpi_program("unequal ranks under mpirun") else { return };
+    let (_folder, scene) = small();
+    let results = Results::new();
+    let run = |cfl: &str| {
+        let run = Run::new(&scene).set(cfl).out(results.path());
+        run.patience(SECONDS)
+    };
+    let two = run("numerics.cfl=0.9").mpi(&program, 2);
+    let outcome = two.beside(run("numerics.cfl=0.8").mpi(&program, 1)).finish();
+    assert!(!outcome.status.success(), "{outcome}");
+    outcome.message.assert_contains(&["rank 2 runs a different build", "cfl: 0.8", "cfl: 0.9"]);
+    assert_eq!(outcome.message.count("different build"), 1, "{outcome}");
+    assert!(results.files(".vtu").is_empty(), "a run began");
+}
+
 /// How long a job that fails may take: a hang lasts for ever.
 const SECONDS: Duration = Duration::from_secs(60);
 

@@ -6,7 +6,7 @@ use std::fs;
 use std::sync::OnceLock;
 
 const COUNTS: [&str; 3] = ["/steps", "/lost_particles", "/particles/fluid"];
-const NUMBERS: [&str; 15] = [
+const NUMBERS: [&str; 23] = [
     "/simulated_time",
     "/wall_seconds",
     "/cpu_seconds",
@@ -18,8 +18,16 @@ const NUMBERS: [&str; 15] = [
     "/pair_interactions_per_second",
     "/neighbours_per_particle",
     "/exposed_seconds",
+    "/exposed_share",
+    "/collective_seconds",
+    "/collective_share",
+    "/messages",
+    "/bytes_sent",
     "/halo_redundancy",
     "/imbalance",
+    "/predicted_imbalance",
+    "/partitions",
+    "/pair_interactions",
     "/energies/end/kinetic",
     "/energies/end/potential",
 ];

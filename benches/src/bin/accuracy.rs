@@ -32,6 +32,7 @@ fn simulate(scene: &str, spacing: f64, out: &Path) -> Outcome<(PathBuf, Summary)
         threads: Some(1),
         checkpoint_every: None,
         resume: false,
+        blocking: false,
     };
     let summary = run(&World::Process, &scene, &options, &|_| ())?;
     Ok((folder, summary))

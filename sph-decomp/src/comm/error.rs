@@ -59,6 +59,19 @@ pub enum CommError {
         /// Bytes the receiver expected.
         expected: usize,
     },
+    /// Slots of outer particles are numbered in 32 bits.
+    #[error(
+        "rank {rank} is about to send {count} particles besides {before} of others: a rank can hold \
+         2^32 outer particles; use more ranks"
+    )]
+    TooManyOuter {
+        /// The sender.
+        rank: usize,
+        /// Particles it announces.
+        count: u64,
+        /// Particles of ranks before it.
+        before: u32,
+    },
     /// A message is addressed to a rank that does not exist.
     #[error("a message is addressed to rank {rank}, but there are only {size} ranks")]
     NoSuchRank {

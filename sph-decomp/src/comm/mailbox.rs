@@ -1,38 +1,36 @@
-//! Mailboxes of ranks that are threads of one process.
+//! Mailboxes of ranks that are threads of one process, for the messages of passes.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
+use super::meeting::Hall;
 use super::{CommError, Operation};
 
-/// A message and the number of the operation it belongs to.
+/// A message and the operation it belongs to.
 #[derive(Debug)]
 pub(super) struct Message {
     pub operation: Operation,
     pub bytes: Vec<u8>,
 }
 
-#[derive(Debug, Default)]
-struct Inbox {
-    /// One queue per sender, first in, first out.
-    queues: Vec<VecDeque<Message>>,
-    /// Senders that have returned and will never write again.
-    finished: Vec<bool>,
-}
+/// Messages by sender, first in, first out; only of those that have ever written.
+type Inbox = BTreeMap<usize, VecDeque<Message>>;
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Mailbox {
     inbox: Mutex<Inbox>,
     changed: Condvar,
+    /// Whether the owner has returned and will never write again.
+    returned: AtomicBool,
 }
 
-/// The mailboxes of all ranks, and the first failure among them.
+/// The mailboxes of all ranks, and the hall in which they meet.
 #[derive(Debug)]
 pub(super) struct PostOffice {
     boxes: Vec<Mailbox>,
     failed: AtomicBool,
-    failure: Mutex<Option<(usize, String)>>,
+    pub hall: Hall,
 }
 
 /// Nothing in this module panics while it holds a lock, so a poisoned lock still guards sound data.
@@ -40,31 +38,25 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+fn next(inbox: &mut Inbox, from: usize) -> Option<Message> {
+    inbox.get_mut(&from)?.pop_front()
+}
+
 impl PostOffice {
     pub fn new(ranks: usize) -> Self {
-        let inbox = || Inbox {
-            queues: (0..ranks).map(|_| VecDeque::new()).collect(),
-            finished: vec![false; ranks],
-        };
-        let boxes = (0..ranks)
-            .map(|_| Mailbox { inbox: Mutex::new(inbox()), changed: Condvar::new() })
-            .collect();
-        Self { boxes, failed: AtomicBool::new(false), failure: Mutex::new(None) }
-    }
-
-    pub fn ranks(&self) -> usize {
-        self.boxes.len()
+        let boxes = (0..ranks).map(|_| Mailbox::default()).collect();
+        Self { boxes, failed: AtomicBool::new(false), hall: Hall::new(ranks) }
     }
 
     pub fn post(&self, from: usize, to: usize, message: Message) {
         let mailbox = &self.boxes[to];
-        lock(&mailbox.inbox).queues[from].push_back(message);
+        lock(&mailbox.inbox).entry(from).or_default().push_back(message);
         mailbox.changed.notify_all();
     }
 
     /// The next message from a rank, if it is already there.
     pub fn try_take(&self, to: usize, from: usize) -> Option<Message> {
-        lock(&self.boxes[to].inbox).queues[from].pop_front()
+        next(&mut lock(&self.boxes[to].inbox), from)
     }
 
     /// The next message from a rank; waits for it, but not for a rank that has failed or returned.
@@ -72,7 +64,7 @@ impl PostOffice {
         let mailbox = &self.boxes[to];
         let mut inbox = lock(&mailbox.inbox);
         loop {
-            if let Some(message) = inbox.queues[from].pop_front() {
+            if let Some(message) = next(&mut inbox, from) {
                 return Ok(message);
             }
             if self.failed.load(Ordering::Acquire) {
@@ -80,7 +72,7 @@ impl PostOffice {
                 let (rank, message) = self.failure().unwrap_or_default();
                 return Err(CommError::RankFailed { rank, message });
             }
-            if inbox.finished[from] {
+            if self.boxes[from].returned.load(Ordering::Acquire) {
                 let message = format!("it returned while rank {to} waited for a message from it");
                 return Err(CommError::RankFailed { rank: from, message });
             }
@@ -90,24 +82,26 @@ impl PostOffice {
 
     /// Notes the first failure and wakes everybody.
     pub fn fail(&self, rank: usize, message: String) {
-        lock(&self.failure).get_or_insert((rank, message));
+        self.hall.fail(rank, message);
         self.failed.store(true, Ordering::Release);
-        self.wake(|_| ());
+        self.wake();
     }
 
-    /// Notes that a rank has returned and wakes everybody.
-    pub fn finish(&self, rank: usize) {
-        self.wake(|inbox| inbox.finished[rank] = true);
+    /// Notes that a rank has returned after so many operations, and wakes everybody.
+    pub fn finish(&self, rank: usize, operations: u64) {
+        self.hall.finish(rank, operations);
+        self.boxes[rank].returned.store(true, Ordering::Release);
+        self.wake();
     }
 
     pub fn failure(&self) -> Option<(usize, String)> {
-        lock(&self.failure).clone()
+        self.hall.failure()
     }
 
-    fn wake(&self, change: impl Fn(&mut Inbox)) {
+    fn wake(&self) {
         for mailbox in &self.boxes {
             // Taken and released, so that nobody is between its check and its wait.
-            change(&mut lock(&mailbox.inbox));
+            drop(lock(&mailbox.inbox));
             mailbox.changed.notify_all();
         }
     }

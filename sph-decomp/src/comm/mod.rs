@@ -1,8 +1,12 @@
 //! The seam between the algorithms of this crate and whatever carries their messages.
 
+mod blocking;
 mod build;
+pub(crate) mod clock;
 mod error;
 mod mailbox;
+mod meeting;
+mod metered;
 #[cfg(feature = "mpi")]
 mod mpi;
 pub(crate) mod order;
@@ -12,8 +16,10 @@ mod traffic;
 
 #[cfg(feature = "mpi")]
 pub use self::mpi::Mpi;
+pub use blocking::Blocking;
 pub use build::check_same_build;
 pub use error::{CommError, Operation};
+pub use metered::{Collectives, Metered};
 pub use solo::Solo;
 pub use threads::{RanksError, ThreadRank, ThreadRanks};
 pub use traffic::{Exposed, Part, Progress, Traffic};

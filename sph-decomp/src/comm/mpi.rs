@@ -167,7 +167,8 @@ impl Communicator for Mpi {
         if total == 0 {
             return Ok(vec![Vec::new(); self.size()]);
         }
-        if total > PIECE as u64 {
+        if total > self.piece as u64 {
+            // The displacements within the result are counted in 32 bits too.
             let copies = (0..self.size()).map(|rank| (rank, bytes.to_vec())).collect();
             let mut all = vec![Vec::new(); self.size()];
             for (rank, bytes) in self.exchange_some(copies)? {
@@ -288,7 +289,7 @@ struct Flight<'s, 'a> {
     /// The first so many requests are receptions.
     receptions: usize,
     done: Vec<(usize, Status, &'a [u8])>,
-    polls: u32,
+    polls: u64,
     error: Option<CommError>,
 }
 

@@ -11,7 +11,7 @@ use super::{CommError, Communicator, Exposed, Progress, Traffic, check_letters};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Solo;
 
-struct Counted<'a>(&'a Cell<u32>);
+struct Counted<'a>(&'a Cell<u64>);
 
 impl Progress for Counted<'_> {
     fn poll(&mut self) {

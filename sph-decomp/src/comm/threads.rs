@@ -1,17 +1,19 @@
 //! Ranks as threads of one process.
 
 use std::any::Any;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::fmt::Display;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::Instant;
 
 use super::mailbox::{Message, PostOffice};
-use super::order::max_ordered;
-use super::{CommError, Communicator, Exposed, Operation, Progress, Traffic, check_letters, words};
+use super::meeting::Content;
+use super::order::{from_ordered, to_ordered};
+use super::{CommError, Communicator, Exposed, Operation, Progress, Traffic, check_letters};
 
 /// Runs a program on several ranks that are threads of this process: the embedded way to use and
 /// to test a decomposition, without MPI.
@@ -121,16 +123,17 @@ fn run_rank<R, E: Display>(
     office: &Arc<PostOffice>,
     work: &impl Fn(ThreadRank) -> Result<R, E>,
 ) -> Outcome<R, E> {
+    let operations = Arc::new(AtomicU64::new(0));
     let comm = ThreadRank {
         rank,
         office: Arc::clone(office),
-        operation: Cell::new(0),
+        operations: Arc::clone(&operations),
         spare: RefCell::default(),
     };
     // The closure is not used again after a panic, so no broken state can be seen.
     match catch_unwind(AssertUnwindSafe(|| work(comm))) {
         Ok(Ok(result)) => {
-            office.finish(rank);
+            office.finish(rank, operations.load(Ordering::Relaxed));
             Outcome::Done(result)
         }
         Ok(Err(error)) => {
@@ -156,17 +159,19 @@ fn say(panic: &(dyn Any + Send)) -> String {
 pub struct ThreadRank {
     rank: usize,
     office: Arc<PostOffice>,
-    /// Number of operations so far: every message carries it, so that ranks that are out of step
-    /// get an error instead of each other's data.
-    operation: Cell<u64>,
-    /// Buffers of messages that came, kept for messages that go.
+    /// Number of operations so far: ranks that are out of step get an error instead of each other's
+    /// data.
+    operations: Arc<AtomicU64>,
+    /// Buffers of messages that came, kept for messages that go: at most [`SPARE`].
     spare: RefCell<Vec<Vec<u8>>>,
 }
 
+/// More neighbours than a rank usually has.
+const SPARE: usize = 64;
+
 impl ThreadRank {
     fn next_operation(&self, name: &'static str) -> Operation {
-        self.operation.set(self.operation.get() + 1);
-        Operation { name, number: self.operation.get() }
+        Operation { name, number: self.operations.fetch_add(1, Ordering::Relaxed) + 1 }
     }
 
     fn post(&self, to: usize, operation: Operation, bytes: &[u8]) {
@@ -179,6 +184,10 @@ impl ThreadRank {
     fn take(&self, from: usize, operation: Operation) -> Result<Vec<u8>, CommError> {
         let message = self.office.take(self.rank, from)?;
         Self::in_step(from, operation, message)
+    }
+
+    fn take_if_there(&self, from: usize) -> Option<Message> {
+        self.office.try_take(self.rank, from)
     }
 
     fn in_step(rank: usize, ours: Operation, message: Message) -> Result<Vec<u8>, CommError> {
@@ -196,40 +205,40 @@ impl Communicator for ThreadRank {
     }
 
     fn size(&self) -> usize {
-        self.office.ranks()
+        self.office.hall.ranks()
     }
 
     fn exchange_some(
         &self,
         send: Vec<(usize, Vec<u8>)>,
     ) -> Result<Vec<(usize, Vec<u8>)>, CommError> {
-        let size = self.size();
+        let (me, size, hall) = (self.rank, self.size(), &self.office.hall);
         check_letters(&send, size)?;
         let operation = self.next_operation("exchange_some");
-        // Everybody gets a letter, most of them empty: receivers then know when all have come.
-        let mut letters = vec![Vec::new(); size];
-        for (rank, bytes) in send {
-            letters[rank] = bytes;
-        }
-        for (rank, bytes) in letters.into_iter().enumerate() {
-            self.office.post(self.rank, rank, Message { operation, bytes });
-        }
-        let mut received = Vec::new();
-        for rank in 0..size {
-            let bytes = self.take(rank, operation)?;
-            if !bytes.is_empty() {
-                received.push((rank, bytes));
-            }
-        }
+        hall.come(me, operation, |content| {
+            content.add_letters(size, me, send);
+            Ok(())
+        })?;
+        let mut received = hall.wait(me, operation, |content| match content {
+            Content::Letters(all) => std::mem::take(&mut all[me]),
+            _ => vec![],
+        })?;
+        received.sort_by_key(|(rank, _)| *rank);
         Ok(received)
     }
 
     fn all_gather(&self, bytes: &[u8]) -> Result<Vec<Vec<u8>>, CommError> {
+        let (me, size, hall) = (self.rank, self.size(), &self.office.hall);
         let operation = self.next_operation("all_gather");
-        for rank in 0..self.size() {
-            self.post(rank, operation, bytes);
-        }
-        (0..self.size()).map(|rank| self.take(rank, operation)).collect()
+        hall.come(me, operation, |content| {
+            content.add_share(size, me, bytes);
+            Ok(())
+        })?;
+        let all = hall.wait(me, operation, |content| match content {
+            Content::Gathered(all) => all.clone(),
+            _ => vec![],
+        })?;
+        Ok(all.iter().map(|bytes| bytes.as_deref().unwrap_or_default().to_vec()).collect())
     }
 
     fn overlap(
@@ -240,27 +249,24 @@ impl Communicator for ThreadRank {
     ) -> Result<Exposed, CommError> {
         traffic.check(self.size())?;
         let operation = self.next_operation("overlap");
-        let others = || (0..self.size()).filter(|&rank| rank != self.rank);
-        let mut wanted = Vec::new();
-        if !traffic.maxima.is_empty() {
-            for rank in others() {
-                self.post(rank, operation, bytemuck::cast_slice(traffic.maxima));
-                wanted.push((rank, Want::Maxima));
-            }
+        let reduces = !traffic.maxima.is_empty();
+        let mine: Vec<u64> = traffic.maxima.iter().map(|&x| to_ordered(x)).collect();
+        self.office.hall.come(self.rank, operation, |content| content.add_maxima(mine))?;
+        if !reduces {
+            self.office.hall.leave(operation);
         }
         inner(traffic.send);
         for part in traffic.send_parts.iter().filter(|part| !part.bytes.is_empty()) {
             self.post(part.rank, operation, &traffic.send[part.bytes.clone()]);
         }
-        for part in traffic.receive_parts.iter().filter(|part| !part.bytes.is_empty()) {
-            wanted.push((part.rank, Want::Part(part.bytes.clone())));
-        }
+        let parts = traffic.receive_parts.iter().filter(|part| !part.bytes.is_empty());
         let mut arrivals = Arrivals {
             comm: self,
             operation,
             receive: traffic.receive,
             maxima: traffic.maxima,
-            wanted,
+            wanted: parts.map(|part| (part.rank, part.bytes.clone())).collect(),
+            reduces,
             polls: 0,
             error: None,
         };
@@ -272,65 +278,71 @@ impl Communicator for ThreadRank {
         exposed.polls = arrivals.polls;
         Ok(exposed)
     }
+
+    fn sum_u64(&self, values: &mut [u64]) -> Result<(), CommError> {
+        let operation = self.next_operation("sum_u64");
+        let mine = values.to_vec();
+        self.office.hall.come(self.rank, operation, |content| content.add_sums(mine))?;
+        let copy = |content: &mut Content| values.copy_from_slice(content.values());
+        self.office.hall.wait(self.rank, operation, copy)
+    }
+
+    fn max_f64(&self, values: &mut [f64]) -> Result<(), CommError> {
+        let operation = self.next_operation("max_f64");
+        let mine = values.iter().map(|&x| to_ordered(x)).collect();
+        self.office.hall.come(self.rank, operation, |content| content.add_maxima(mine))?;
+        self.office.hall.wait(self.rank, operation, |content| decode(content, values))
+    }
 }
 
-/// What a message of an overlapped pass is for.
-enum Want {
-    Maxima,
-    Part(Range<usize>),
+/// The result of a reduction by maximum.
+fn decode(content: &mut Content, values: &mut [f64]) {
+    for (value, &key) in values.iter_mut().zip(content.values()) {
+        *value = from_ordered(key);
+    }
 }
 
-/// The messages that an overlapped pass still waits for.
+/// What an overlapped pass still waits for.
 struct Arrivals<'a> {
     comm: &'a ThreadRank,
     operation: Operation,
     receive: &'a mut [u8],
     maxima: &'a mut [f64],
-    /// In the order in which each sender writes.
-    wanted: Vec<(usize, Want)>,
-    polls: u32,
+    /// Senders and places, in the order in which each sender writes.
+    wanted: Vec<(usize, Range<usize>)>,
+    /// Whether the reduction is still to come.
+    reduces: bool,
+    polls: u64,
     error: Option<CommError>,
 }
 
 impl Arrivals<'_> {
     /// Puts a message in its place and keeps its buffer for a later message.
-    fn place(&mut self, rank: usize, want: &Want, bytes: Vec<u8>) -> Result<(), CommError> {
-        match want {
-            Want::Maxima => {
-                let theirs = words(rank, &bytes, self.maxima.len())?;
-                for (value, word) in self.maxima.iter_mut().zip(theirs) {
-                    *value = max_ordered(*value, f64::from_ne_bytes(word));
-                }
-            }
-            Want::Part(range) if range.len() == bytes.len() => {
-                self.receive[range.clone()].copy_from_slice(&bytes);
-            }
-            Want::Part(range) => {
-                let (got, expected) = (bytes.len(), range.len());
-                return Err(CommError::WrongLength { rank, got, expected });
-            }
+    fn place(&mut self, rank: usize, place: Range<usize>, bytes: Vec<u8>) -> Result<(), CommError> {
+        if place.len() != bytes.len() {
+            let (got, expected) = (bytes.len(), place.len());
+            return Err(CommError::WrongLength { rank, got, expected });
         }
-        self.comm.spare.borrow_mut().push(bytes);
+        self.receive[place].copy_from_slice(&bytes);
+        let mut spare = self.comm.spare.borrow_mut();
+        if spare.len() < SPARE {
+            spare.push(bytes);
+        }
         Ok(())
     }
 
     fn take_what_is_there(&mut self) -> Result<(), CommError> {
-        let mut silent = vec![false; self.comm.size()];
-        let mut still = Vec::new();
-        for (rank, want) in std::mem::take(&mut self.wanted) {
-            let message = match silent[rank] {
-                true => None,
-                false => self.comm.office.try_take(self.comm.rank, rank),
-            };
+        let mut still: Vec<(usize, Range<usize>)> = Vec::new();
+        for (rank, place) in std::mem::take(&mut self.wanted) {
+            // A later message of a sender must not take the place of an earlier one.
+            let silent = still.iter().any(|(other, _)| *other == rank);
+            let message = if silent { None } else { self.comm.take_if_there(rank) };
             match message {
                 Some(message) => {
                     let bytes = ThreadRank::in_step(rank, self.operation, message)?;
-                    self.place(rank, &want, bytes)?;
+                    self.place(rank, place, bytes)?;
                 }
-                None => {
-                    silent[rank] = true;
-                    still.push((rank, want));
-                }
+                None => still.push((rank, place)),
             }
         }
         self.wanted = still;
@@ -341,9 +353,13 @@ impl Arrivals<'_> {
         if let Some(error) = self.error.take() {
             return Err(error);
         }
-        for (rank, want) in std::mem::take(&mut self.wanted) {
+        for (rank, place) in std::mem::take(&mut self.wanted) {
             let bytes = self.comm.take(rank, self.operation)?;
-            self.place(rank, &want, bytes)?;
+            self.place(rank, place, bytes)?;
+        }
+        if std::mem::take(&mut self.reduces) {
+            let (hall, rank) = (&self.comm.office.hall, self.comm.rank);
+            hall.wait(rank, self.operation, |content| decode(content, self.maxima))?;
         }
         Ok(())
     }
@@ -352,6 +368,11 @@ impl Arrivals<'_> {
 impl Progress for Arrivals<'_> {
     fn poll(&mut self) {
         self.polls += 1;
+        if self.reduces {
+            let hall = &self.comm.office.hall;
+            let taken = hall.try_take(self.operation, |content| decode(content, self.maxima));
+            self.reduces = taken.is_none();
+        }
         if self.error.is_none() && !self.wanted.is_empty() {
             self.error = self.take_what_is_there().err();
         }

@@ -72,17 +72,26 @@ pub struct Exposed {
     /// Seconds this rank was blocked after its own work was done: the part of the communication
     /// that was not hidden.
     pub wait_seconds: f64,
+    /// Seconds of the two closures of a pass of [`Halo`](crate::Halo), polls included: the work of
+    /// this rank. Zero on one rank, where nobody has to be compared with.
+    pub work_seconds: f64,
+    /// The same in seconds for which the calling thread had a core: the measure of the work when
+    /// there are more ranks than cores, as long as the closures leave no work to other threads.
+    /// Equals `work_seconds` where the system does not tell.
+    pub thread_seconds: f64,
     /// Bytes sent to other ranks.
     pub bytes_sent: u64,
     /// Messages sent to other ranks.
-    pub messages: u32,
+    pub messages: u64,
     /// How often the computation called [`Progress::poll`].
-    pub polls: u32,
+    pub polls: u64,
 }
 
 impl AddAssign for Exposed {
     fn add_assign(&mut self, other: Self) {
         self.wait_seconds += other.wait_seconds;
+        self.work_seconds += other.work_seconds;
+        self.thread_seconds += other.thread_seconds;
         self.bytes_sent += other.bytes_sent;
         self.messages += other.messages;
         self.polls += other.polls;

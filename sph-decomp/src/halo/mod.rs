@@ -6,6 +6,7 @@ pub use plan::{HaloPlan, PlanError};
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::comm::clock::WorkClock;
 use crate::{CommError, Communicator, Exposed, Part, Progress, Traffic};
 
 /// Reusable buffers for the exchange of one element `T` per particle.
@@ -89,19 +90,22 @@ impl<T: Pod> Halo<T> {
             maxima,
         };
         let (mut inner, mut local) = (Some(inner), Some(local));
-        let exposed = comm.overlap(
+        let clock = WorkClock::new(comm.size() > 1);
+        let mut exposed = comm.overlap(
             traffic,
             &mut |send| {
                 if let Some(inner) = inner.take() {
-                    inner(bytemuck::cast_slice_mut(send));
+                    clock.time(|| inner(bytemuck::cast_slice_mut(send)));
                 }
             },
             &mut |progress| {
                 if let Some(local) = local.take() {
-                    local(progress);
+                    clock.time(|| local(progress));
                 }
             },
         )?;
+        let work = clock.total();
+        (exposed.work_seconds, exposed.thread_seconds) = (work.wall, work.thread);
         Ok((&self.receive, exposed))
     }
 

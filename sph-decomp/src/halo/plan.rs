@@ -65,7 +65,9 @@ impl HaloPlan {
             let (got, expected) = (bytes.len(), 8);
             let count: [u8; 8] =
                 bytes.try_into().map_err(|_| CommError::WrongLength { rank, got, expected })?;
-            let next = outer + u64::from_ne_bytes(count) as u32;
+            let count = u64::from_ne_bytes(count);
+            let next = u32::try_from(u64::from(outer) + count)
+                .map_err(|_| CommError::TooManyOuter { rank, count, before: outer })?;
             receives.push((rank, (outer..next).collect()));
             outer = next;
         }

@@ -1,12 +1,16 @@
 //! Who owns which part of space.
 
+mod askew;
 mod balance;
+mod balancer;
 mod hilbert;
 mod orb;
 mod splitters;
 mod weights;
 
+pub use askew::Askew;
 pub use balance::{Imbalance, Rebalance};
+pub use balancer::{Balancer, Evenness, Load, Review};
 pub use hilbert::HilbertCurve;
 pub use orb::Orb;
 

@@ -143,6 +143,34 @@ impl<const D: usize> Orb<D> {
         }
         regions
     }
+
+    /// Calls `visit` with each rank whose piece of space has a point nearer to `x` than `reach`; for a
+    /// positive reach, that of `x` itself is one of them.
+    ///
+    /// What is at rest can be sent by it to whoever will ever come near, as long as the partition
+    /// lasts.
+    pub fn within(&self, x: &[f64; D], reach: f64, mut visit: impl FnMut(usize)) {
+        let root = if self.nodes.is_empty() { Child::Rank(0) } else { Child::Node(0) };
+        // Pieces to look at, with their distance from x along each axis.
+        let mut pieces = vec![(root, [0.0_f64; D])];
+        while let Some((piece, gaps)) = pieces.pop() {
+            let node = match piece {
+                Child::Rank(rank) => {
+                    visit(rank as usize);
+                    continue;
+                }
+                Child::Node(node) => &self.nodes[node as usize],
+            };
+            let beyond = x[node.axis] - node.cut;
+            for (child, gap) in [(node.low, beyond), (node.high, -beyond)] {
+                let mut gaps = gaps;
+                gaps[node.axis] = gaps[node.axis].max(gap);
+                if gaps.iter().map(|gap| gap * gap).sum::<f64>() < reach * reach {
+                    pieces.push((child, gaps));
+                }
+            }
+        }
+    }
 }
 
 impl<const D: usize> Partition<D> for Orb<D> {

@@ -1,6 +1,7 @@
 //! Clouds of particles for the tests.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
+pub mod graded;
 pub mod scenario;
 
 use proptest::prelude::*;

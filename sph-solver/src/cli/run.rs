@@ -32,6 +32,10 @@ pub struct RunArguments {
     /// Go on from the latest checkpoint in the folder of the results
     #[arg(long)]
     resume: bool,
+    /// Without overlap: each pass waits for its messages before it computes the local particles.
+    /// The same results, only slower; shows what the overlap is worth
+    #[arg(long)]
+    blocking: bool,
     /// No progress bar and no closing words
     #[arg(long)]
     pub quiet: bool,
@@ -47,6 +51,7 @@ impl RunArguments {
             threads: self.threads,
             checkpoint_every: self.checkpoint_every,
             resume: self.resume,
+            blocking: self.blocking,
         }
     }
 }
@@ -119,8 +124,8 @@ fn closing_words(summary: &Summary, options: &RunOptions) -> String {
         summary.threads,
     );
     if summary.ranks > 1 {
-        let share = 100.0 * summary.exposed_seconds / summary.wall_seconds;
-        text += &format!(", {share:.1} % of the time in exposed communication");
+        let share = 100.0 * summary.exposed_share;
+        text += &format!(", {share:.1} % of the steps in exposed communication");
     }
     if summary.lost_particles > 0 {
         let lost = summary.lost_particles;

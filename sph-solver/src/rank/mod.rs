@@ -10,7 +10,7 @@ use crate::records::Record;
 use crate::state::State;
 use crate::terms::Acceleration;
 use bytemuck::Pod;
-use sph_decomp::{Halo, HaloPlan, Orb, Parts};
+use sph_decomp::{Askew, Halo, HaloPlan, Orb, Parts};
 use sph_kernels::Real;
 use sph_neighbors::{CellList, ClusterList};
 
@@ -53,7 +53,7 @@ pub struct Rank<const D: usize, S: Real> {
     plan: HaloPlan,
     density_halo: Halo<[S; 3]>,
     force_halo: Halo<[S; 6]>,
-    partition: Option<Orb<D>>,
+    partition: Option<Askew<Orb<D>>>,
 }
 
 /// What a pass needs of a rank, borrowed apart.

@@ -11,7 +11,7 @@ use crate::team::Team;
 use crate::terms::Acceleration;
 use bytemuck::Pod;
 use sph_decomp::{
-    Communicator, Halo, HaloPlan, MaxReach, Orb, Partition, Parts, Reach, Zone, ZoneOptions,
+    Askew, Communicator, Halo, HaloPlan, MaxReach, Orb, Partition, Parts, Reach, Zone, ZoneOptions,
     migrate,
 };
 use sph_kernels::Real;
@@ -28,14 +28,18 @@ const LOOSE: f64 = 0.95;
 /// records wrap around after 256 support radii: what is far must not seem near.
 const JUMP: f64 = 8.0;
 
-/// Cost of a wall particle, in pairs: it is only stored, sorted and sent.
-const WALL_COST: f64 = 4.0;
+/// Cost of a wall particle, in pairs: no sweep visits it as a target. It is stored, sorted and
+/// sent at rebuilds, so that a rank is not left with all the walls of a dry half for nothing.
+const WALL_COST: f64 = 0.5;
 /// Cost of a fluid particle besides its neighbours, in pairs.
 const FLUID_COST: f64 = 20.0;
+/// Neighbours of a fluid particle before there are lists.
+const USUAL_NEIGHBOURS: usize = 90;
 
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Brings the particles to their owners, finds the overlap zone, sorts, and builds the lists.
-    /// Returns the particles that have left the domain; they are gone. Collective.
+    /// Returns the particles that have left the domain; they are gone. With `division`, space is
+    /// divided anew, and the particles of this rank weigh that many times their cost. Collective.
     pub fn rebuild(
         &mut self,
         comm: &dyn Communicator,
@@ -43,12 +47,12 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         model: &Model<D>,
         encoder: &Encoder,
         has_walls: bool,
-        rebalance: bool,
+        division: Option<f64>,
     ) -> Result<Vec<(u64, [f64; D])>, RunError> {
         let gone = self.remove_outside(model);
         let grid = Grid::new(model.domain.0, CELL * model.reach())?;
         let settled = self.wall_cells.is_some();
-        let divided = comm.size() > 1 && self.send_home(comm, rebalance)?;
+        let divided = comm.size() > 1 && self.send_home(comm, division)?;
         if divided || !settled {
             self.settle_solids(comm, model, encoder, &grid)?;
         }
@@ -85,30 +89,44 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
 
     /// Sends every particle to the rank that owns its place. Returns whether space was divided anew:
     /// only then do solids travel.
-    fn send_home(&mut self, comm: &dyn Communicator, rebalance: bool) -> Result<bool, RunError> {
-        let divides = rebalance || self.partition.is_none();
-        if divides {
+    fn send_home(
+        &mut self,
+        comm: &dyn Communicator,
+        division: Option<f64>,
+    ) -> Result<bool, RunError> {
+        if let Some(rate) = division {
+            let weights: Vec<f64> = self.costs().iter().map(|cost| rate * cost).collect();
             let positions = [&self.state.position[..], &self.solids.position[..]].concat();
-            self.partition = Some(Orb::build(&comm, &positions, &self.costs())?);
+            let positions = Askew::view(&positions);
+            self.partition = Some(Askew::new(Orb::build(&comm, &positions, &weights)?));
         }
         if let Some(partition) = &self.partition {
             migrate(&comm, &partition.owners(&self.state.position), &mut self.state.columns())?;
-            if divides {
+            if division.is_some() {
                 let owners = partition.owners(&self.solids.position);
                 migrate(&comm, &owners, &mut self.solids.columns())?;
             }
         }
-        Ok(divides)
+        Ok(division.is_some())
     }
 
-    /// Cost of each owned particle, fluid first, in pairs: measured numbers of neighbours once there
-    /// are lists. Particles that were just taken out shift the rest, which blurs the estimate a
-    /// little.
+    /// Cost of each owned particle in one step, fluid first, in pairs: its neighbours once there are
+    /// lists. Particles that were just taken out shift the rest, which blurs the estimate a little.
     fn costs(&self) -> Vec<f64> {
         let pairs = |list: &ClusterList, i| if i < list.len() { list.count(i) } else { 0 };
-        let near = |i| (pairs(&self.near_fluid, i) + pairs(&self.near_walls, i)) as f64;
-        let fluid = (0..self.state.len()).map(|i| FLUID_COST + near(i));
+        let neighbours = |i: usize| match self.near_fluid.is_empty() {
+            true => USUAL_NEIGHBOURS,
+            false => pairs(&self.near_fluid, i) + pairs(&self.near_walls, i),
+        };
+        let fluid = (0..self.state.len()).map(|i| FLUID_COST + neighbours(i) as f64);
         fluid.chain(std::iter::repeat_n(WALL_COST, self.solids.len())).collect()
+    }
+
+    /// Sum of the costs of the owned particles with the present lists; 0 before there are lists.
+    pub fn predicted_cost(&self) -> f64 {
+        let pairs = self.near_fluid.pairs() + self.near_walls.pairs();
+        let (fluid, solid) = (self.state.len() as f64, self.solids.len() as f64);
+        FLUID_COST * fluid + WALL_COST * solid + pairs as f64
     }
 
     /// Finds who needs which fluid particles, sorts those of this rank, and fetches those of others.

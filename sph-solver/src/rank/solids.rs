@@ -10,6 +10,7 @@ use bytemuck::Pod;
 use sph_decomp::{CommError, Communicator, Parts};
 use sph_kernels::Real;
 use sph_neighbors::{CellList, Grid};
+use std::collections::BTreeMap;
 
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Gives every rank the solids that its fluid can see wherever in its piece of space it flows,
@@ -50,25 +51,24 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.solid = Parts { local: owned, inner: 0, outer: 0 };
         let Some(partition) = &self.partition else { return Ok(Vec::new()) };
         // Wider by more than the rounding of the search.
-        let limit = (reach * (1.0 + 1e-4)).powi(2);
-        let mut inner = vec![false; owned];
-        let mut letters = Vec::new();
-        for (rank, (low, high)) in partition.regions().into_iter().enumerate() {
-            if rank == comm.rank() {
-                continue;
-            }
-            let mut letter: Vec<Traveller> = Vec::new();
-            for (i, x) in self.solids.position.iter().enumerate() {
-                let gaps = (0..D).map(|k| (low[k] - x[k]).max(x[k] - high[k]).max(0.0).powi(2));
-                if gaps.sum::<f64>() < limit {
-                    inner[i] = true;
-                    letter.push(depart(&self.solids, i));
+        let limit = reach * (1.0 + 1e-4);
+        let mut inner = 0;
+        let mut letters: BTreeMap<usize, Vec<Traveller>> = BTreeMap::new();
+        for (i, x) in self.solids.position.iter().enumerate() {
+            let mut sent = false;
+            partition.within(x, limit, |rank| {
+                if rank != comm.rank() {
+                    sent = true;
+                    letters.entry(rank).or_default().push(depart(&self.solids, i));
                 }
-            }
-            letters.push((rank, bytemuck::cast_slice(&letter).to_vec()));
+            });
+            inner += usize::from(sent);
         }
-        let inner = inner.iter().filter(|&&sent| sent).count();
         self.solid = Parts { local: owned - inner, inner, outer: 0 };
+        let letters = letters
+            .into_iter()
+            .map(|(rank, letter)| (rank, bytemuck::cast_slice(&letter).to_vec()))
+            .collect();
         let mut received = Vec::new();
         for (rank, bytes) in comm.exchange_some(letters)? {
             let (words, rest) = bytes.as_chunks::<{ size_of::<Traveller>() }>();

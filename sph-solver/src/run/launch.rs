@@ -14,7 +14,7 @@ use crate::scene::{self, Field, ProbeKind, Scene};
 use crate::setup::{Constants, Particles, Setup};
 use crate::state::State;
 use crate::team::Team;
-use sph_decomp::{Communicator, RanksError, Solo, ThreadRanks, check_same_build};
+use sph_decomp::{Blocking, Communicator, RanksError, Solo, ThreadRanks, check_same_build};
 use std::path::PathBuf;
 
 /// What the command line adds to a scene.
@@ -32,6 +32,9 @@ pub struct RunOptions {
     pub checkpoint_every: Option<f64>,
     /// Whether to continue from the latest checkpoint in `out`.
     pub resume: bool,
+    /// Whether to wait for all messages of a pass before the local particles are computed. The same
+    /// bits, only slower: it shows what the overlap is worth.
+    pub blocking: bool,
 }
 
 /// Runs a scene and returns its summary, the same on all processes. `watch` is called after each
@@ -55,6 +58,7 @@ struct Launch<const D: usize> {
     plan: RunPlan<D>,
     ranks: Option<usize>,
     threads: Option<usize>,
+    blocking: bool,
 }
 
 impl<const D: usize> Launch<D> {
@@ -77,7 +81,8 @@ impl<const D: usize> Launch<D> {
             resume: options.resume,
         };
         let (ranks, threads) = (options.ranks, options.threads);
-        Ok(Self { particles, model, features, plan, ranks, threads })
+        let blocking = options.blocking;
+        Ok(Self { particles, model, features, plan, ranks, threads, blocking })
     }
 
     fn run(self, world: &World, watch: &(dyn Fn(Status) + Sync)) -> Result<Summary, RunError> {
@@ -118,6 +123,8 @@ impl<const D: usize> Launch<D> {
         threads: usize,
         watch: &(dyn Fn(Status) + Sync),
     ) -> Result<Summary, RunError> {
+        let without_overlap = Blocking::new(comm);
+        let comm: &dyn Communicator = if self.blocking { &without_overlap } else { comm };
         if comm.size() > self.particles.len() {
             let (ranks, particles) = (comm.size(), self.particles.len());
             return Err(RunError::TooManyRanks { ranks, particles });
@@ -145,6 +152,7 @@ impl<const D: usize> Launch<D> {
                         Precision::Double => "double",
                     },
                     communicator,
+                    overlapped: !self.blocking,
                     one_process: communicator != "mpi",
                 },
             },

@@ -21,6 +21,8 @@ pub struct Meta {
     pub precision: &'static str,
     /// "solo", "threads" or "mpi".
     pub communicator: &'static str,
+    /// Whether messages travel while the local particles are computed.
+    pub overlapped: bool,
     /// Whether all ranks are in this process, so that its CPU time counts once.
     pub one_process: bool,
 }
@@ -60,6 +62,9 @@ pub struct Summary {
     pub phases: Phases,
     /// Fluid particles times steps per second, over all ranks.
     pub particle_updates_per_second: f64,
+    /// Pairs evaluated in both passes of all steps of this process, over all ranks, walls included;
+    /// list entries in the skin count. The same on any number of ranks: no pair is computed twice.
+    pub pair_interactions: u64,
     /// Pairs evaluated in both passes per second, over all ranks; list entries in the skin count.
     pub pair_interactions_per_second: f64,
     /// List entries per fluid particle, skin included.
@@ -70,14 +75,33 @@ pub struct Summary {
     pub stale_steps: u64,
     /// Bytes of particle data and lists per particle.
     pub bytes_per_particle: f64,
-    /// Communication that was not hidden, s, of the rank with most.
+    /// Whether messages travelled while the local particles were computed.
+    pub overlapped: bool,
+    /// Communication of the passes that was not hidden (waiting in step 7, reduction of the time
+    /// step included), s, of the rank with most.
     pub exposed_seconds: f64,
+    /// The same as a fraction of the time of the steps, of the rank with the largest.
+    pub exposed_share: f64,
+    /// Time in the blocking operations of rebuilds, s, of the rank with most: waiting for slower
+    /// ranks included. No other step has any.
+    pub collective_seconds: f64,
+    /// The same as a fraction of the time of the steps, of the rank with the largest.
+    pub collective_share: f64,
+    /// Messages sent in the passes, over all ranks.
+    pub messages: u64,
+    /// Bytes sent in the passes, over all ranks.
+    pub bytes_sent: u64,
     /// Received copies of fluid particles divided by owned ones at the end.
     pub halo_redundancy: f64,
     /// Local, inner and outer fluid particles of each rank at the end.
     pub local_inner_outer: Vec<[usize; 3]>,
-    /// Largest over mean time in the two passes, exposed communication left out.
+    /// Largest over mean time of the sweeps of a rank between two rebuilds, averaged over the run.
+    /// With one thread per rank it is the time for which that thread had a core.
     pub imbalance: f64,
+    /// Largest over mean predicted cost of a rank (list lengths and walls), averaged over the run.
+    pub predicted_imbalance: f64,
+    /// How often space was divided among the ranks.
+    pub partitions: u64,
     /// Energies at the start of this process and at the end, J.
     pub energies: Energies,
     /// Momentum at the end, kg m/s.
@@ -151,6 +175,7 @@ where
     let rank = simulation.rank();
     let counters = simulation.counters();
     let (fluid, solid) = (rank.fluid, rank.solid);
+    let exposed = simulation.exposed();
     let mut counts = [
         fluid.owned() as u64,
         solid.owned() as u64,
@@ -159,31 +184,39 @@ where
         rank.bytes() as u64,
         fluid.outer as u64,
         rank.near_fluid.pairs() + rank.near_walls.pairs(),
+        exposed.messages,
+        exposed.bytes_sent,
     ];
     comm.sum_u64(&mut counts)?;
-    let [fluid_count, wall_count, updates, pairs, bytes, outer, near] = counts.map(|n| n as f64);
+    let [fluid_count, wall_count, updates, pairs, bytes, outer, near, ..] =
+        counts.map(|n| n as f64);
 
     let timings = simulation.timings();
-    let exposed = simulation.exposed().wait_seconds;
-    let passes = timings.seconds(Phase::Density) + timings.seconds(Phase::Force);
-    let work = (passes - exposed).max(0.0);
+    let seconds = [Phase::Rebuild, Phase::Density, Phase::Force].map(|p| timings.seconds(p));
+    // A run without steps has no shares.
+    let share = |part: f64| part / seconds.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    let (waited, blocked) = (exposed.wait_seconds, simulation.collectives().seconds);
     let mut slowest = [
         finished.elapsed.as_secs_f64(),
-        timings.seconds(Phase::Rebuild),
-        timings.seconds(Phase::Density),
-        timings.seconds(Phase::Force),
+        seconds[0],
+        seconds[1],
+        seconds[2],
         timings.seconds(Phase::Output),
-        exposed,
-        work,
+        waited,
+        share(waited),
+        blocked,
+        share(blocked),
     ];
     comm.max_f64(&mut slowest)?;
-    let [wall_seconds, rebuild, density, force, output, exposed_seconds, most_work] = slowest;
+    let [wall_seconds, rebuild, density, force, output, ..] = slowest;
+    let [exposed_seconds, exposed_share, collective_seconds, collective_share] =
+        [slowest[5], slowest[6], slowest[7], slowest[8]];
+    let evenness = simulation.evenness();
 
-    let row = [fluid.local as u64, fluid.inner as u64, fluid.outer as u64, work.to_bits()];
+    let row = [fluid.local as u64, fluid.inner as u64, fluid.outer as u64];
     let rows = comm.all_gather(bytemuck::cast_slice(&row))?;
-    let rows: Vec<[u64; 4]> =
+    let rows: Vec<[u64; 3]> =
         rows.iter().filter_map(|bytes| bytemuck::try_pod_read_unaligned(bytes).ok()).collect();
-    let mean_work = rows.iter().map(|row| f64::from_bits(row[3])).sum::<f64>() / rows.len() as f64;
 
     let mine = if meta.one_process && comm.rank() > 0 { Some(0.0) } else { cpu_seconds() };
     let all = comm.all_gather(&mine.unwrap_or(f64::NAN).to_ne_bytes())?;
@@ -211,18 +244,24 @@ where
         cpu_seconds: cpu.is_finite().then_some(cpu),
         phases: Phases { rebuild, density, force, output },
         particle_updates_per_second: updates / loop_seconds,
+        pair_interactions: counts[3],
         pair_interactions_per_second: pairs / (density + force),
         neighbours_per_particle: near / fluid_count,
         steps_per_rebuild: counters.steps as f64 / counters.rebuilds as f64,
         stale_steps: counters.stale_steps,
         bytes_per_particle: bytes / (fluid_count + wall_count),
+        overlapped: meta.overlapped,
         exposed_seconds,
+        exposed_share,
+        collective_seconds,
+        collective_share,
+        messages: counts[7],
+        bytes_sent: counts[8],
         halo_redundancy: outer / fluid_count,
-        local_inner_outer: rows
-            .iter()
-            .map(|row| [row[0] as usize, row[1] as usize, row[2] as usize])
-            .collect(),
-        imbalance: if mean_work > 0.0 { most_work / mean_work } else { 1.0 },
+        local_inner_outer: rows.iter().map(|row| row.map(|count| count as usize)).collect(),
+        imbalance: evenness.measured.unwrap_or(evenness.predicted),
+        predicted_imbalance: evenness.predicted,
+        partitions: evenness.partitions,
         energies: Energies { start: Energy::of(first), end: Energy::of(last) },
         momentum: last.momentum.to_vec(),
         compression: last.compression,
