@@ -1,6 +1,7 @@
 //! Who owns which part of space.
 
 mod balance;
+mod divide;
 mod hilbert;
 mod orb;
 mod splitters;

@@ -16,36 +16,36 @@ use crate::zone::Aabb;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Orb<const D: usize> {
     /// The root comes first; without nodes there is one rank.
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Node {
-    axis: usize,
+pub(super) struct Node {
+    pub axis: usize,
     /// Coordinates below the cut are on the low side.
-    cut: f64,
-    low: Child,
-    high: Child,
+    pub cut: f64,
+    pub low: Child,
+    pub high: Child,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Child {
+pub(super) enum Child {
     Node(u32),
     Rank(u32),
 }
 
 /// A piece of space that is still to be divided among several ranks.
 #[derive(Debug, Clone, Copy)]
-struct Region {
-    node: u32,
-    first_rank: usize,
-    ranks: usize,
+pub(super) struct Region {
+    pub node: u32,
+    pub first_rank: usize,
+    pub ranks: usize,
 }
 
 /// Bits of a coordinate within its region that the search for a cut resolves.
 const BITS: u32 = 42;
 /// A particle that is in no region any more, because its rank is known.
-const DONE: u32 = u32::MAX;
+pub(super) const DONE: u32 = u32::MAX;
 
 impl<const D: usize> Orb<D> {
     /// Divides the particles of all ranks. Collective.
@@ -132,15 +132,15 @@ impl<const D: usize> Partition<D> for Orb<D> {
 }
 
 /// One level of the bisection: all regions are cut at the same time.
-struct Level<'a, const D: usize> {
-    positions: &'a [[f64; D]],
-    weights: &'a [u64],
-    region_of: &'a [u32],
+pub(super) struct Level<'a, const D: usize> {
+    pub positions: &'a [[f64; D]],
+    pub weights: &'a [u64],
+    pub region_of: &'a [u32],
 }
 
 impl<const D: usize> Level<'_, D> {
     /// The axis and coordinate at which each region is cut.
-    fn cut<C: Communicator>(
+    pub fn cut<C: Communicator>(
         &self,
         comm: &C,
         regions: &[Region],
