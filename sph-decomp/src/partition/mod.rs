@@ -9,6 +9,7 @@ mod weights;
 
 pub use balance::{Imbalance, Rebalance};
 pub use hilbert::HilbertCurve;
+pub(crate) use orb::HEAVY_SHARE;
 pub use orb::Orb;
 
 use crate::CommError;

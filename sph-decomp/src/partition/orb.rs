@@ -1,13 +1,14 @@
 //! Weighted orthogonal recursive bisection.
 
 use super::splitters::{Keyed, Target, find};
-use super::weights::to_integers;
+use super::weights::{LARGEST, to_integers};
 use super::{Partition, PartitionError, check_positions};
 use crate::Communicator;
 use crate::zone::Aabb;
 
 /// Orthogonal recursive bisection: space is cut across its longest side so that the weights on
-/// the two sides are as the numbers of ranks there, and each side is cut again.
+/// the two sides are as the numbers of ranks there, and each side is cut again. The longest side is
+/// that of the box around the heavy particles, those of at least a quarter of the largest weight.
 ///
 /// Built by all ranks together, level by level, with histograms of weights (as in Warren and
 /// Salmon, *A parallel hashed oct-tree N-body algorithm*, 1993, and Boman et al., *Zoltan*, 2012):
@@ -44,6 +45,10 @@ pub(super) struct Region {
 
 /// Bits of a coordinate within its region that the search for a cut resolves.
 const BITS: u32 = 42;
+/// Particles of at least a quarter of the largest weight decide across which axis a region is cut.
+const HEAVY: u64 = (LARGEST * HEAVY_SHARE) as u64;
+/// That quarter.
+pub(crate) const HEAVY_SHARE: f64 = 0.25;
 /// A particle that is in no region any more, because its rank is known.
 pub(super) const DONE: u32 = u32::MAX;
 
@@ -145,8 +150,12 @@ impl<const D: usize> Level<'_, D> {
         comm: &C,
         regions: &[Region],
     ) -> Result<Vec<(usize, f64)>, PartitionError> {
-        let boxes = self.boxes(comm, regions.len())?;
-        let axes: Vec<usize> = boxes.iter().map(longest_side).collect();
+        let boxes = self.boxes(comm, regions.len(), 0)?;
+        // Many light particles around a few heavy ones, such as the dry walls of a tank around its
+        // water, must not decide across which axis the work is cut: it would end in thin slices.
+        let heavy = self.boxes(comm, regions.len(), HEAVY)?;
+        let axis = |(heavy, all)| longest_side(if Aabb::is_empty(heavy) { all } else { heavy });
+        let axes: Vec<usize> = heavy.iter().zip(&boxes).map(axis).collect();
         let mut totals = vec![0; regions.len()];
         let mut keyed = Vec::with_capacity(self.positions.len());
         for ((x, &weight), &group) in self.positions.iter().zip(self.weights).zip(self.region_of) {
@@ -181,15 +190,16 @@ impl<const D: usize> Level<'_, D> {
         Ok(axes.iter().zip(beside.chunks_exact(2)).map(cut).collect())
     }
 
-    /// The tight box of the particles in each region.
+    /// The tight box of the particles in each region that weigh at least so much.
     fn boxes<C: Communicator>(
         &self,
         comm: &C,
         regions: usize,
+        least: u64,
     ) -> Result<Vec<Aabb<D>>, PartitionError> {
         let mut boxes = vec![Aabb::EMPTY; regions];
-        for (x, &region) in self.positions.iter().zip(self.region_of) {
-            if region != DONE {
+        for ((x, &region), &weight) in self.positions.iter().zip(self.region_of).zip(self.weights) {
+            if region != DONE && weight >= least {
                 boxes[region as usize].add(x);
             }
         }

@@ -2,6 +2,7 @@
 
 use super::error::ScaleError;
 use super::load::Layout;
+use crate::partition::HEAVY_SHARE;
 
 /// A box of lattice points: from `first` to before `end` along each axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,18 +124,16 @@ fn cut<const D: usize>(
     classes: &[BlockClass],
     share: f64,
 ) -> (usize, i32) {
-    let (mut low, mut high) = ([i32::MAX; D], [i32::MIN; D]);
-    for block in blocks {
-        for axis in 0..D {
-            low[axis] = low[axis].min(block.first[axis]);
-            high[axis] = high[axis].max(block.end[axis]);
-        }
-    }
-    let Some(_) = blocks.first() else { return (0, 0) };
-    let side = |axis: usize| high[axis] - low[axis];
+    let Some((low, high)) = bounds(blocks.iter()) else { return (0, 0) };
+    // As for particles, what is light does not decide across which axis the work is cut.
+    let most = classes.iter().map(|class| class.cost).fold(0.0, f64::max);
+    let heavy =
+        |block: &&LatticeBlock<D>| classes[usize::from(block.class)].cost >= HEAVY_SHARE * most;
+    let (from, to) = bounds(blocks.iter().filter(heavy)).unwrap_or((low, high));
+    let side = |axis: usize| to[axis] - from[axis];
     let axis = (1..D).fold(0, |best, axis| if side(axis) > side(best) { axis } else { best });
     // Cost of each layer, from the changes where blocks begin and end.
-    let mut layers = vec![0.0; side(axis) as usize + 1];
+    let mut layers = vec![0.0; (high[axis] - low[axis]) as usize + 1];
     for block in blocks {
         let class = &classes[usize::from(block.class)];
         let thickness = f64::from(block.end[axis] - block.first[axis]);
@@ -162,6 +161,20 @@ fn cut<const D: usize>(
     let missing = (target - below).max(0.0);
     let above = missing >= (inside - missing) * (1.0 - 1e-12);
     (axis, low[axis] + layer as i32 + i32::from(above))
+}
+
+/// The box around blocks, if there are any.
+fn bounds<'a, const D: usize>(
+    blocks: impl Iterator<Item = &'a LatticeBlock<D>>,
+) -> Option<([i32; D], [i32; D])> {
+    blocks.fold(None, |all, block| {
+        let (mut low, mut high) = all.unwrap_or((block.first, block.end));
+        for axis in 0..D {
+            low[axis] = low[axis].min(block.first[axis]);
+            high[axis] = high[axis].max(block.end[axis]);
+        }
+        Some((low, high))
+    })
 }
 
 #[cfg(test)]
