@@ -1,7 +1,7 @@
 //! The overlap zone between ranks that own lattice blocks.
 
 use super::blocks::{BlockClass, LatticeBlock};
-use super::load::{Layout, RankLoad};
+use super::load::{Layout, Link, RankLoad};
 use super::near::near_ranks;
 use crate::zone::Aabb;
 
@@ -27,6 +27,7 @@ pub(super) fn count<const D: usize>(
         neighbours[q as usize].push(p as usize);
     }
     let mut loads = vec![RankLoad::default(); owned.len()];
+    let mut links = Vec::new();
     for (p, blocks) in owned.iter().enumerate() {
         let mut marked = Marked { blocks, marks: vec![Vec::new(); blocks.len()], reach };
         for &q in &neighbours[p] {
@@ -43,15 +44,12 @@ pub(super) fn count<const D: usize>(
                 }
             }
             if sent > 0.0 {
-                loads[p].sent += sent;
-                loads[p].messages_out += 1;
-                loads[q].outer += sent;
-                loads[q].messages_in += 1;
+                links.push(Link { from: p as u32, to: q as u32, elements: sent });
             }
         }
         marked.hold(classes, &mut loads[p]);
     }
-    Layout { ranks: loads }
+    Layout::new(loads, links)
 }
 
 /// The box around the lattice points of a block.

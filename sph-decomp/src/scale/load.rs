@@ -43,14 +43,41 @@ impl RankLoad {
     }
 }
 
+/// What one rank sends to another in a pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Link {
+    /// The sender.
+    pub from: u32,
+    /// The receiver.
+    pub to: u32,
+    /// Elements of the message.
+    pub elements: f64,
+}
+
 /// The loads of all ranks, in rank order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layout {
     /// One per rank.
     pub ranks: Vec<RankLoad>,
+    /// Who sends how much to whom in a pass, ordered by sender and receiver.
+    pub links: Vec<Link>,
 }
 
 impl Layout {
+    /// Ranks with these loads; the links say what they send to each other.
+    pub(super) fn new(mut ranks: Vec<RankLoad>, mut links: Vec<Link>) -> Self {
+        links.sort_unstable_by_key(|link| (link.from, link.to));
+        for link in &links {
+            let from = &mut ranks[link.from as usize];
+            from.sent += link.elements;
+            from.messages_out += 1;
+            let to = &mut ranks[link.to as usize];
+            to.outer += link.elements;
+            to.messages_in += 1;
+        }
+        Self { ranks, links }
+    }
+
     /// A sum over all ranks.
     pub fn sum(&self, number: impl Fn(&RankLoad) -> f64) -> f64 {
         self.ranks.iter().map(number).sum()

@@ -23,13 +23,15 @@ mod points;
 mod predict;
 mod rebuild;
 mod step;
+mod traffic;
 
 pub use blocks::{BlockClass, LatticeBlock};
 pub use error::ScaleError;
-pub use load::{Layout, RankLoad};
+pub use load::{Layout, Link, RankLoad};
 pub use network::Network;
 pub use pack::measure_pack_rate;
 pub use points::Point;
 pub use predict::Prediction;
 pub use rebuild::Rebuilds;
 pub use step::{Rates, StepTime, Variant};
+pub use traffic::RankTraffic;

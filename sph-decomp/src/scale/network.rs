@@ -4,8 +4,8 @@ use super::error::{ScaleError, positive};
 
 /// A network in the LogGP model of Alexandrov, Ionescu, Schauser and Scheiman, *LogGP: incorporating
 /// long messages into the LogP model*, SPAA 1995: a message of k bytes takes `o + L + (k − 1) G + o`
-/// from one process to another, and one process begins messages `g` apart. Long messages of the ranks
-/// of a node share its interface.
+/// from one process to another, and one process begins messages `g` apart. The ranks of a node share
+/// its interface, so that 1/G is the bandwidth of the node and k counts the bytes of all its ranks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Network {
     /// L: time on the wire, s.
@@ -87,24 +87,16 @@ impl Network {
         positive("ranks_per_node", self.ranks_per_node, "")
     }
 
-    /// G of one rank while all ranks of its node send, s per byte.
-    ///
-    /// All bytes count as leaving the node: messages inside a node are faster, so that this errs
-    /// on the slow side.
-    pub fn seconds_per_byte(&self, ranks: usize) -> f64 {
-        self.ranks_per_node.min(ranks as f64) / self.node_bandwidth
-    }
-
-    /// Time from the first send until the last of `messages` with `bytes` altogether has arrived
-    /// (the receptions being posted), without the overhead of the cores, s.
-    pub fn transfer(&self, messages: u32, bytes: f64, ranks: usize) -> f64 {
+    /// Time from the first send of a rank until the last of its `messages` has arrived (the
+    /// receptions being posted), without the overhead of the cores, s. `node_bytes` is what all ranks
+    /// of the node send or receive through its interface meanwhile.
+    pub fn transfer(&self, messages: u32, node_bytes: f64) -> f64 {
         if messages == 0 {
             return 0.0;
         }
-        let count = f64::from(messages);
-        let long = (bytes - count).max(0.0) * self.seconds_per_byte(ranks);
         // Either the gaps between messages or their bytes hold up the last one.
-        self.latency + long.max((count - 1.0) * self.gap)
+        let gaps = (f64::from(messages) - 1.0) * self.gap;
+        self.latency + gaps.max((node_bytes - 1.0).max(0.0) / self.node_bandwidth)
     }
 }
 
@@ -114,18 +106,10 @@ mod tests {
 
     #[test]
     fn one_message_takes_what_loggp_says() {
-        let net = Network { ranks_per_node: 1.0, ..Network::GEMINI };
-        let seconds = net.transfer(1, 6001.0, 8);
-        assert!((seconds - (1.5e-6 + 6000.0 / 6.0e9)).abs() < 1e-15);
-        assert_eq!(net.transfer(0, 0.0, 8), 0.0);
-        assert!((net.transfer(5, 10.0, 8) - (1.5e-6 + 4.0 * 0.5e-6)).abs() < 1e-15);
-    }
-
-    #[test]
-    fn ranks_of_a_node_share_its_interface() {
         let net = Network::GEMINI;
-        assert_eq!(net.seconds_per_byte(4), 4.0 / 6.0e9);
-        assert_eq!(net.seconds_per_byte(1000), 32.0 / 6.0e9);
+        assert!((net.transfer(1, 6001.0) - (1.5e-6 + 6000.0 / 6.0e9)).abs() < 1e-15);
+        assert_eq!(net.transfer(0, 0.0), 0.0);
+        assert!((net.transfer(5, 10.0) - (1.5e-6 + 4.0 * 0.5e-6)).abs() < 1e-15);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The layout of particles that are really there.
 
 use super::error::ScaleError;
-use super::load::{Layout, RankLoad};
+use super::load::{Layout, Link, RankLoad};
 use super::near::near_ranks;
 use crate::zone::{Aabb, Block, BlockTree, MaxReach, check, tile};
 use crate::{Orb, Reach, ZoneOptions};
@@ -80,6 +80,7 @@ impl<const D: usize> Count<'_, D> {
         let boxes: Vec<Aabb<D>> =
             (0..ranks).map(|rank| Aabb::of(&self.positions[self.range(rank)])).collect();
         let mut loads = vec![RankLoad::default(); ranks];
+        let mut links = Vec::new();
         let mut inner = vec![false; self.positions.len()];
         // The zone widens its reach by a hair; a little more here finds all pairs that it does.
         for (p, q) in near_ranks(&boxes, self.reach * 1.001, &self.options.period) {
@@ -92,7 +93,7 @@ impl<const D: usize> Count<'_, D> {
             let trees = [self.blocks(near[0].clone()), self.blocks(near[1].clone())];
             for (from, to, near, tree) in [(p, q, &near[0], &trees[1]), (q, p, &near[1], &trees[0])]
             {
-                self.send(near, tree, (from, to), &mut loads, &mut inner);
+                links.extend(self.send(near, tree, (from, to), &mut loads, &mut inner));
             }
         }
         for (rank, load) in loads.iter_mut().enumerate() {
@@ -110,7 +111,7 @@ impl<const D: usize> Count<'_, D> {
                 }
             }
         }
-        Layout { ranks: loads }
+        Layout::new(loads, links)
     }
 
     fn range(&self, rank: usize) -> Range<usize> {
@@ -135,7 +136,7 @@ impl<const D: usize> Count<'_, D> {
         BlockTree::new(blocks)
     }
 
-    /// Counts what one rank sends to another.
+    /// Counts what one rank sends to another; the link is that of a pass.
     fn send(
         &self,
         near: &[u32],
@@ -143,7 +144,7 @@ impl<const D: usize> Count<'_, D> {
         (from, to): (usize, usize),
         loads: &mut [RankLoad],
         inner: &mut [bool],
-    ) {
+    ) -> Option<Link> {
         let mut active = 0;
         for &i in near {
             if !theirs.touches::<MaxReach>(&self.point(i), &self.options.period) {
@@ -158,11 +159,9 @@ impl<const D: usize> Count<'_, D> {
                 loads[to].repeated_pairs += f64::from(point.pairs);
             }
         }
-        if active > 0 {
-            loads[from].sent += f64::from(active);
-            loads[from].messages_out += 1;
-            loads[to].outer += f64::from(active);
-            loads[to].messages_in += 1;
-        }
+        (active > 0).then(|| {
+            let (from, to) = (from as u32, to as u32);
+            Link { from, to, elements: f64::from(active) }
+        })
     }
 }

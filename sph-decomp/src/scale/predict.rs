@@ -3,6 +3,7 @@
 use super::load::Layout;
 use super::network::Network;
 use super::step::{Rates, StepTime, Variant};
+use super::traffic::RankTraffic;
 
 /// What a layout means in seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +27,10 @@ impl Prediction {
     /// caches of cores that get few particles, output.
     pub fn of(layout: &Layout, rates: &Rates, net: &Network, variant: Variant) -> Self {
         let ranks = layout.ranks.len();
-        let times = layout.ranks.iter().map(|load| StepTime::of(load, rates, net, ranks, variant));
+        let traffic = RankTraffic::of(layout, net);
+        let times = layout.ranks.iter().zip(&traffic);
+        let times =
+            times.map(|(load, traffic)| StepTime::of(load, traffic, rates, net, ranks, variant));
         let slowest = times.fold(StepTime::default(), |slowest, time| {
             if time.total() > slowest.total() { time } else { slowest }
         });

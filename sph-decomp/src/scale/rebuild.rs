@@ -2,6 +2,7 @@
 
 use super::load::RankLoad;
 use super::network::Network;
+use super::traffic::RankTraffic;
 
 /// How often a run rebuilds, and what it computes then.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,17 +39,25 @@ impl Rebuilds {
     /// A rebuild gathers the boxes of all ranks, tells who will send (a word per rank, four times),
     /// and sends blocks and the state of the outer particles. A partition makes seven histograms per
     /// level of the bisection, of 64 bins for each region of the level.
-    pub(super) fn communicating(&self, load: &RankLoad, net: &Network, ranks: usize) -> f64 {
+    pub(super) fn communicating(
+        &self,
+        load: &RankLoad,
+        traffic: &RankTraffic,
+        net: &Network,
+        ranks: usize,
+    ) -> f64 {
         if ranks == 1 {
             return 0.0;
         }
         let p = ranks as f64;
-        let outer = load.outer + load.outer_passive;
         let messages = load.messages_in.max(load.messages_out);
-        let bytes = outer * (STATE_BYTES + BLOCK_BYTES / PER_BLOCK);
+        // Walls travel too, in proportion.
+        let walls = if load.outer > 0.0 { load.outer_passive / load.outer } else { 0.0 };
+        let elements = traffic.node_in.max(traffic.node_out) * (1.0 + walls);
+        let bytes = elements * (STATE_BYTES + BLOCK_BYTES / PER_BLOCK);
         let each = net.gathering(BLOCK_BYTES * p, ranks)
             + EXCHANGES * net.gathering(8.0 * p, ranks)
-            + net.transfer(messages, bytes, ranks);
+            + net.transfer(messages, bytes);
         let levels = p.log2().ceil();
         let partition = CUT_ROUNDS * net.long_reduction(0.0, ranks) * levels
             + CUT_ROUNDS * 2.0 * BIN_BYTES * p / net.node_bandwidth

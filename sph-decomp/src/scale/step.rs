@@ -4,6 +4,7 @@ use super::error::{ScaleError, positive};
 use super::load::RankLoad;
 use super::network::Network;
 use super::rebuild::Rebuilds;
+use super::traffic::RankTraffic;
 
 /// What a core does per second, and what a pass sends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,13 +92,17 @@ impl StepTime {
     /// for
     ///
     /// ```text
-    /// max(0, transfer − local work)        transfer = L + max((m − 1) g, (bytes − m) G)
+    /// max(0, transfer − local work)        transfer = L + max((m − 1) g, (k − 1) G)
     /// ```
+    ///
+    /// with m messages of the rank and k bytes through the interface of its node. Messages inside a
+    /// node are copied once more instead.
     ///
     /// and without for all of the transfer. The reduction of the time step, log₂ P rounds of
     /// `o + L + o`, travels beside the density pass, or is waited for.
     pub fn of(
         load: &RankLoad,
+        traffic: &RankTraffic,
         rates: &Rates,
         net: &Network,
         ranks: usize,
@@ -112,13 +117,14 @@ impl StepTime {
             ..Self::default()
         };
         time.rebuild = rates.rebuilds.computing(time.compute);
-        time.rebuild_messages = rates.rebuilds.communicating(load, net, ranks);
+        time.rebuild_messages = rates.rebuilds.communicating(load, traffic, net, ranks);
         let messages = f64::from(load.messages_in + load.messages_out);
         for (pass, bytes) in rates.element_bytes.into_iter().enumerate() {
-            let work = (load.sent + load.outer) / rates.packs + messages * net.overhead;
+            let elements = load.sent + traffic.inside + load.outer;
+            let work = elements / rates.packs + messages * net.overhead;
             time.messages += work;
-            let out = net.transfer(load.messages_out, load.sent * bytes, ranks);
-            let back = net.transfer(load.messages_in, load.outer * bytes, ranks);
+            let out = net.transfer(load.messages_out, traffic.node_out * bytes);
+            let back = net.transfer(load.messages_in, traffic.node_in * bytes);
             let hidden = if variant.overlap { local } else { 0.0 };
             time.exposed += (out.max(back) - hidden).max(0.0);
             if pass == 0 {
@@ -158,11 +164,13 @@ mod tests {
         }
     }
 
+    const TRAFFIC: RankTraffic = RankTraffic { inside: 0.0, node_out: 300.0, node_in: 300.0 };
+
     #[test]
     fn a_step_by_hand() {
         let net = Network { ranks_per_node: 1.0, ..Network::GEMINI };
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12 + 1e-9 * b.abs(), "{a} {b}");
-        let best = StepTime::of(&load(), &rates(), &net, 8, Variant::BEST);
+        let best = StepTime::of(&load(), &TRAFFIC, &rates(), &net, 8, Variant::BEST);
         close(best.compute, 200e-6);
         close(best.rebuild, 200e-6 / 3.0);
         // Twice: 600 elements and eight messages.
@@ -171,13 +179,14 @@ mod tests {
         assert_eq!((best.exposed, best.repeated), (0.0, 0.0));
         let plain = StepTime::of(
             &load(),
+            &TRAFFIC,
             &rates(),
             &net,
             8,
             Variant { overlap: false, repeats_walls: true },
         );
         close(plain.repeated, 10e-6);
-        let pass = |bytes: f64| 1.5e-6 + ((300.0 * bytes - 4.0) / 6e9_f64).max(3.0 * 0.5e-6);
+        let pass = |bytes: f64| 1.5e-6 + ((300.0 * bytes - 1.0) / 6e9_f64).max(3.0 * 0.5e-6);
         close(plain.exposed, pass(12.0) + pass(24.0) + 3.0 * 2.5e-6);
         assert!(plain.total() > best.total());
     }
@@ -185,15 +194,23 @@ mod tests {
     #[test]
     fn little_work_hides_little() {
         let tiny = RankLoad { local_pairs: 1_000.0, ..load() };
-        let exposed =
-            |load| StepTime::of(load, &rates(), &Network::GEMINI, 4096, Variant::BEST).exposed;
+        let busy = RankTraffic { node_out: 32.0 * 300.0, ..TRAFFIC };
+        let net = Network::GEMINI;
+        let exposed = |load| StepTime::of(load, &busy, &rates(), &net, 4096, Variant::BEST).exposed;
         assert!(exposed(&tiny) > 0.0 && exposed(&tiny) > exposed(&load()));
     }
 
     #[test]
     fn one_rank_only_computes() {
         let alone = RankLoad { local_pairs: 1e6, local: 1e4, ..RankLoad::default() };
-        let time = StepTime::of(&alone, &rates(), &Network::GEMINI, 1, Variant::BEST);
+        let time = StepTime::of(
+            &alone,
+            &RankTraffic::default(),
+            &rates(),
+            &Network::GEMINI,
+            1,
+            Variant::BEST,
+        );
         assert_eq!(time.total(), time.compute + time.rebuild);
     }
 

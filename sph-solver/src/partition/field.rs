@@ -14,7 +14,7 @@ use sph_decomp::scale::{BlockClass, LatticeBlock, Layout, Point};
 const WALL_COST: f32 = 4.0;
 const FLUID_COST: f32 = 20.0;
 
-/// More particles than this are sampled by blocks.
+/// More fluid particles than this are sampled by blocks.
 const MOST_PARTICLES: f64 = 1.2e7;
 
 /// By what the partition weighs particles.
@@ -50,7 +50,7 @@ enum Content<const D: usize> {
 }
 
 impl<const D: usize> Field<D> {
-    /// Reads a scene. Up to 12 million particles are really placed, unless `sample` asks for blocks;
+    /// Reads a scene. Up to 12 million fluid particles are really placed, unless `sample` asks for blocks;
     /// more are sampled.
     ///
     /// # Errors
@@ -59,7 +59,7 @@ impl<const D: usize> Field<D> {
     pub fn read(scene: &Scene, costs: Costs, sample: bool) -> Result<Self, SceneError> {
         let geometry = Geometry::<D>::read(scene, None)?;
         let blocks = Sample::new(scene, &geometry)?;
-        if sample || blocks.fluid() + blocks.walls() > MOST_PARTICLES {
+        if sample || blocks.fluid() > MOST_PARTICLES {
             return Ok(Self::of_blocks(scene, &blocks, costs));
         }
         drop(blocks);
