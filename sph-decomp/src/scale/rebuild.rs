@@ -51,9 +51,8 @@ impl Rebuilds {
         }
         let p = ranks as f64;
         let messages = load.messages_in.max(load.messages_out);
-        // Walls travel too, in proportion.
-        let walls = if load.outer > 0.0 { load.outer_passive / load.outer } else { 0.0 };
-        let elements = traffic.node_in.max(traffic.node_out) * (1.0 + walls);
+        // Passive particles travel too; those of a rank are few beside what its node exchanges.
+        let elements = traffic.node_in.max(traffic.node_out) + load.outer_passive;
         let bytes = elements * (STATE_BYTES + BLOCK_BYTES / PER_BLOCK);
         let each = net.gathering(BLOCK_BYTES * p, ranks)
             + EXCHANGES * net.gathering(8.0 * p, ranks)

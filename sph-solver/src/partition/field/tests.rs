@@ -70,12 +70,12 @@ fn blocks_of_one_particle_are_the_particles() {
 #[test]
 fn a_number_of_particles_has_a_spacing() {
     let coarse = scene(&[]);
-    let spacing = spacing_for::<3>(&coarse, 1e9).unwrap();
-    assert!((spacing - (0.3_f64 / 1e9).cbrt()).abs() < 0.01 * spacing);
+    let spacing = spacing_for::<3>(&coarse, 1e8).unwrap();
+    assert!((spacing - (0.3_f64 / 1e8).cbrt()).abs() < 0.01 * spacing);
     let mut field =
         Field::<3>::read(&scene(&[&format!("numerics.spacing={spacing}")]), Costs::Lists, false);
     let field = field.as_mut().unwrap();
-    assert!((field.fluid / 1e9 - 1.0).abs() < 0.02, "{}", field.fluid);
-    let layout = field.layout(4096).unwrap();
+    assert!((field.fluid / 1e8 - 1.0).abs() < 0.02, "{}", field.fluid);
+    let layout = field.layout(512).unwrap();
     assert!(layout.imbalance(|rank| rank.cost).ratio() < 1.1);
 }
