@@ -1,6 +1,6 @@
 //! The time of a step on all ranks.
 
-use super::load::Layout;
+use super::load::{Layout, RankLoad};
 use super::network::Network;
 use super::step::{Rates, StepTime, Variant};
 use super::traffic::RankTraffic;
@@ -34,13 +34,13 @@ impl Prediction {
         let slowest = times.fold(StepTime::default(), |slowest, time| {
             if time.total() > slowest.total() { time } else { slowest }
         });
-        let compute = 2.0 * layout.sum(|load| load.pairs()) / rates.pairs;
+        let compute = 2.0 * layout.sum(RankLoad::pairs) / rates.pairs;
         Self {
             ranks,
             step: slowest.total(),
             slowest,
             one_rank: compute + rates.rebuilds.computing(compute),
-            imbalance: layout.imbalance(|load| load.pairs()).ratio(),
+            imbalance: layout.imbalance(RankLoad::pairs).ratio(),
         }
     }
 

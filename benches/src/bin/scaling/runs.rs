@@ -3,7 +3,7 @@
 use crate::Outcome;
 use crate::series::scene_of;
 use sph_decomp::scale::{
-    Layout, Network, Prediction, RankTraffic, Rates, Rebuilds, StepTime, Variant,
+    Layout, Network, Prediction, RankLoad, RankTraffic, Rates, Rebuilds, StepTime, Variant,
 };
 use sph_solver::partition::{Costs, Field};
 use sph_solver::run::{RunOptions, Summary, World, run};
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 /// Fluid particles and simulated time of the runs.
 const PARTICLES: f64 = 40_000.0;
-const END: f64 = 0.02;
+const END: f64 = 0.05;
 /// Simulated time of two steps.
 const TINY: f64 = 1e-9;
 
@@ -48,7 +48,7 @@ pub fn compare() -> Outcome<()> {
         println!(
             "| {ranks} | {:.0} | {outer} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} | {:.3} |",
             layout.sum(|rank| rank.outer),
-            layout.imbalance(|rank| rank.pairs()).ratio(),
+            layout.imbalance(RankLoad::pairs).ratio(),
             summary.imbalance,
             work / alone,
             core / core_of_one,

@@ -1,4 +1,5 @@
 use super::*;
+use sph_decomp::scale::RankLoad;
 
 const TANK: &str = r#"dimension = 3
 end_time = 1.0
@@ -35,26 +36,26 @@ fn agree(scene: &Scene, side: i32, tolerance: f64) {
         for ranks in [2, 8, 27, 64] {
             let (a, b) = (sampled.layout(ranks).unwrap(), real.layout(ranks).unwrap());
             let name = |what: &str| format!("{what} on {ranks} ranks, {costs:?}");
-            close(&name("active"), a.sum(|r| r.active()), b.sum(|r| r.active()), 0.02);
+            close(&name("active"), a.sum(RankLoad::active), b.sum(RankLoad::active), 0.02);
             close(&name("inner"), a.sum(|r| r.inner), b.sum(|r| r.inner), tolerance);
             close(&name("outer"), a.sum(|r| r.outer), b.sum(|r| r.outer), tolerance);
-            close(&name("largest"), a.max(|r| r.active()), b.max(|r| r.active()), 0.1);
+            close(&name("largest"), a.max(RankLoad::active), b.max(RankLoad::active), 0.1);
             close(&name("most outer"), a.max(|r| r.outer), b.max(|r| r.outer), 0.15);
-            close(&name("pairs"), a.sum(|r| r.pairs()), b.sum(|r| r.pairs()), 0.12);
+            close(&name("pairs"), a.sum(RankLoad::pairs), b.sum(RankLoad::pairs), 0.12);
         }
     }
 }
 
 #[test]
 fn blocks_agree_with_particles_in_a_tank() {
-    agree(&scene(&[]), 4, 0.06);
-    agree(&scene(&["numerics.spacing=0.017"]), 3, 0.06);
+    agree(&scene(&[]), 4, 0.03);
+    agree(&scene(&["numerics.spacing=0.017"]), 3, 0.03);
 }
 
 #[test]
 fn blocks_agree_with_particles_in_a_ball() {
     let ball = "fluid.water.regions=[{ sphere = { center = [0.5, 0.3, 0.3], radius = 0.29 } }]";
-    agree(&scene(&[ball, "numerics.spacing=0.01"]), 3, 0.06);
+    agree(&scene(&[ball, "numerics.spacing=0.01"]), 3, 0.03);
 }
 
 #[test]
