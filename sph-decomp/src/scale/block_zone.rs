@@ -29,7 +29,7 @@ pub(super) fn count<const D: usize>(
     let mut loads = vec![RankLoad::default(); owned.len()];
     let mut links = Vec::new();
     for (p, blocks) in owned.iter().enumerate() {
-        let mut marked = Marked { blocks, marks: vec![Vec::new(); blocks.len()], reach };
+        let mut marked = Marked::new(blocks, reach);
         for &q in &neighbours[p] {
             marked.mark(&wholes[p], &owned[q], &wholes[q]);
             let mut sent = 0.0;
@@ -63,14 +63,43 @@ fn whole<const D: usize>(blocks: &[LatticeBlock<D>]) -> Aabb<D> {
     whole
 }
 
-/// The blocks of a rank and who needs their points. Blocks that nobody needs have no marks.
-struct Marked<'a, const D: usize> {
-    blocks: &'a [LatticeBlock<D>],
+/// Longest edge of a tile, in points: marks are held and looked through only near other ranks.
+const TILE: i32 = 8;
+
+/// Cuts a block into tiles.
+fn tiles<const D: usize>(block: &LatticeBlock<D>, tiles: &mut Vec<LatticeBlock<D>>) {
+    let counts: [i32; D] =
+        std::array::from_fn(|k| (block.end[k] - block.first[k] + TILE - 1) / TILE);
+    for number in 0..counts.iter().map(|&count| count as usize).product() {
+        let mut rest: usize = number;
+        let mut tile = *block;
+        for k in 0..D {
+            let place = (rest % counts[k] as usize) as i32;
+            rest /= counts[k] as usize;
+            tile.first[k] = block.first[k] + place * TILE;
+            tile.end[k] = block.end[k].min(tile.first[k] + TILE);
+        }
+        tiles.push(tile);
+    }
+}
+
+/// The tiles of a rank and who needs their points. Tiles that nobody needs have no marks.
+struct Marked<const D: usize> {
+    tiles: Vec<LatticeBlock<D>>,
     marks: Vec<Vec<u8>>,
+    /// Tiles with points that the rank in question needs.
+    touched: Vec<usize>,
     reach: f64,
 }
 
-impl<const D: usize> Marked<'_, D> {
+impl<const D: usize> Marked<D> {
+    fn new(blocks: &[LatticeBlock<D>], reach: f64) -> Self {
+        let mut all = Vec::with_capacity(blocks.len());
+        blocks.iter().for_each(|block| tiles(block, &mut all));
+        let marks = vec![Vec::new(); all.len()];
+        Self { tiles: all, marks, touched: Vec::new(), reach }
+    }
+
     /// Marks the points that a rank with blocks `theirs` needs.
     fn mark(&mut self, mine: &Aabb<D>, theirs: &[LatticeBlock<D>], their_whole: &Aabb<D>) {
         let reach2 = self.reach * self.reach;
@@ -80,14 +109,15 @@ impl<const D: usize> Marked<'_, D> {
             .map(|block| (block, sites(block)))
             .filter(|(_, bounds)| near(bounds, mine))
             .collect();
-        for (block, marks) in self.blocks.iter().zip(&mut self.marks) {
-            let bounds = sites(block);
+        for (place, (tile, marks)) in self.tiles.iter().zip(&mut self.marks).enumerate() {
+            let bounds = sites(tile);
             if !near(&bounds, their_whole) {
                 continue;
             }
+            self.touched.push(place);
             for (other, _) in theirs.iter().filter(|(_, other)| near(&bounds, other)) {
-                marks.resize(block.points() as usize, 0);
-                mark_near(block, other, reach2, marks);
+                marks.resize(tile.points() as usize, 0);
+                mark_near(tile, other, reach2, marks);
             }
         }
     }
@@ -95,9 +125,10 @@ impl<const D: usize> Marked<'_, D> {
     /// Points that were marked since the last call, by class; from now on they are inner.
     fn take_sent(&mut self, classes: usize) -> impl Iterator<Item = (usize, f64)> + use<D> {
         let mut sent = vec![0_u64; classes];
-        for (block, marks) in self.blocks.iter().zip(&mut self.marks) {
-            for mark in marks {
-                sent[usize::from(block.class)] += u64::from(*mark >> 1);
+        for place in self.touched.drain(..) {
+            let sent = &mut sent[usize::from(self.tiles[place].class)];
+            for mark in &mut self.marks[place] {
+                *sent += u64::from(*mark >> 1);
                 *mark = (*mark | *mark >> 1) & INNER;
             }
         }
@@ -106,7 +137,7 @@ impl<const D: usize> Marked<'_, D> {
 
     /// Notes what the rank owns.
     fn hold(&self, classes: &[BlockClass], load: &mut RankLoad) {
-        for (block, marks) in self.blocks.iter().zip(&self.marks) {
+        for (block, marks) in self.tiles.iter().zip(&self.marks) {
             let class = &classes[usize::from(block.class)];
             let all = block.points() * class.density;
             load.cost += all * class.cost;

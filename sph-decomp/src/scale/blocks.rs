@@ -55,11 +55,11 @@ impl Layout {
     /// ```
     /// use sph_decomp::scale::{BlockClass, LatticeBlock, Layout, ScaleError};
     ///
-    /// // A billion particles in one block, on 1000 ranks.
-    /// let cube = LatticeBlock { first: [0; 3], end: [1000; 3], class: 0 };
+    /// // 64 million particles in one block, on 512 ranks.
+    /// let cube = LatticeBlock { first: [0; 3], end: [400; 3], class: 0 };
     /// let water = BlockClass { active: true, density: 1.0, cost: 1.0, pairs: 100.0 };
-    /// let layout = Layout::of_blocks(1000, vec![cube], &[water], 3.3)?;
-    /// assert_eq!(layout.sum(|rank| rank.active()), 1e9);
+    /// let layout = Layout::of_blocks(512, vec![cube], &[water], 3.3)?;
+    /// assert_eq!(layout.sum(|rank| rank.active()), 6.4e7);
     /// assert!(layout.imbalance(|rank| rank.active()).ratio() < 1.03);
     /// # Ok::<(), ScaleError>(())
     /// ```

@@ -1,6 +1,6 @@
 //! Blocks of the lattice instead of particles, for fields that do not fit into memory.
 
-use super::{Geometry, lattice_error, nothing, walls};
+use super::{Geometry, lattice_error, nothing, too_many, walls};
 use crate::scene::{Scene, SceneError};
 use sph_geometry::{Lattice, Shape};
 use std::collections::HashSet;
@@ -30,6 +30,9 @@ pub struct Sample<const D: usize> {
 /// Blocks of fluid that are aimed at, so that shapes are resolved and the work stays seconds.
 const BLOCKS: f64 = 4e5;
 
+/// Layers of the lattice in the domain. More than this are a typing error, and would not fit 32 bits.
+const MOST_LAYERS: f64 = 1e7;
+
 impl<const D: usize> Sample<D> {
     /// Samples the shapes of a scene with about 400 000 blocks, or one per particle when there are
     /// fewer. A block is taken when its middle is in the shape, and cut at the box around the shape,
@@ -57,6 +60,13 @@ impl<const D: usize> Sample<D> {
     pub fn with_side(scene: &Scene, geometry: &Geometry<D>, side: i32) -> Result<Self, SceneError> {
         let (_, fluid) = scene.fluid()?;
         let side = side.max(1);
+        let whole = geometry.domain.union(&geometry.fluid_box);
+        let sides: [f64; D] =
+            std::array::from_fn(|k| (whole.max[k] - whole.min[k]) / geometry.lattice.spacing());
+        if sides.iter().any(|side| *side > MOST_LAYERS) {
+            let why = "10 million along an axis are the most that are looked at";
+            return Err(too_many(scene, sides.iter().product(), why));
+        }
         let mut sample = Self { side, blocks: Vec::new(), wall_density: 1.0 };
         for index in 0..geometry.regions.len() {
             sample.add_region(&geometry.lattice, &geometry.regions[..=index]);

@@ -80,3 +80,10 @@ fn a_number_of_particles_has_a_spacing() {
     let layout = field.layout(512).unwrap();
     assert!(layout.imbalance(|rank| rank.cost).ratio() < 1.1);
 }
+
+#[test]
+fn sizes_beyond_reason_are_refused() {
+    let tiny = scene(&["numerics.spacing=1e-9"]);
+    let error = Field::<3>::read(&tiny, Costs::Lists, false).unwrap_err();
+    assert!(error.to_string().contains("`numerics.spacing` must be larger"), "{error}");
+}
