@@ -97,19 +97,20 @@ fn efficiencies(layout: &Layout, rates: &Rates, net: &Network) -> Efficiencies {
 impl Row {
     pub fn print_head() {
         println!(
-            "| ranks | fluid per rank | inner | outer | neighbours | imbalance | fast: overlapped | \
+            "| fluid | ranks | fluid per rank | inner | outer | neighbours | imbalance | fast: overlapped | \
              exposed | packing | rebuilds | blocking | walls repeated | both | slow: overlapped | \
              blocking | both |"
         );
-        println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+        println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     }
 
     pub fn print(&self) {
         let percent = |share: f64| format!("{:.1} %", 100.0 * share);
         let (fast, slow) = (&self.fast, &self.slow);
         println!(
-            "| {} | {:.0} | {:.0} | {:.0} | {:.1} | {:.3} | {} | {} | {} | {} | {} | {} | {} | {} | {} \
+            "| {:.1e} | {} | {:.0} | {:.0} | {:.0} | {:.1} | {:.3} | {} | {} | {} | {} | {} | {} | {} | {} | {} \
              | {} |",
+            self.per_rank * self.ranks as f64,
             self.ranks,
             self.per_rank,
             self.inner,
