@@ -73,9 +73,9 @@ fn tiles<const D: usize>(block: &LatticeBlock<D>, tiles: &mut Vec<LatticeBlock<D
     for number in 0..counts.iter().map(|&count| count as usize).product() {
         let mut rest: usize = number;
         let mut tile = *block;
-        for k in 0..D {
-            let place = (rest % counts[k] as usize) as i32;
-            rest /= counts[k] as usize;
+        for (k, &count) in counts.iter().enumerate() {
+            let place = (rest % count as usize) as i32;
+            rest /= count as usize;
             tile.first[k] = block.first[k] + place * TILE;
             tile.end[k] = block.end[k].min(tile.first[k] + TILE);
         }

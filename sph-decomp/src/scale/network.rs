@@ -28,8 +28,7 @@ impl Network {
     /// machine of the paper. Latency 1.5 µs between nodes of neighbouring routers, and more than
     /// 6 GB/s of measured bandwidth per direction of at most 8.3: Alverson, Roweth and Kaplan, *The
     /// Gemini system interconnect*, Hot Interconnects 2010; van der Steen, *Overview of recent
-    /// supercomputers*, 2010. Overhead and gap: the rate of 2 million MPI messages a second and core
-    /// that such interfaces reach.
+    /// supercomputers*, 2010. Overhead and gap are assumed, a third of the latency each.
     pub const GEMINI: Self = Self {
         latency: 1.5e-6,
         overhead: 0.5e-6,
@@ -40,7 +39,8 @@ impl Network {
 
     /// HPE Slingshot with 200 Gb/s interfaces and 128 ranks per node. At most three hops between
     /// switches of 350 ns each, and about 2 µs from MPI to MPI: De Sensi, Di Girolamo, McMahon,
-    /// Roweth and Hoefler, *An in-depth analysis of the Slingshot interconnect*, SC 2020.
+    /// Roweth and Hoefler, *An in-depth analysis of the Slingshot interconnect*, SC 2020. Overhead and
+    /// gap are assumed.
     pub const SLINGSHOT: Self = Self {
         latency: 2.0e-6,
         overhead: 0.3e-6,
@@ -51,7 +51,7 @@ impl Network {
 
     /// InfiniBand HDR, 200 Gb/s, with 64 ranks per node. Below 1 µs at the interface and about
     /// 1.2 µs from MPI to MPI over a fat tree; 200 Gb/s are 25 GB/s, of which MPI reaches 24: data
-    /// sheets of ConnectX-6 and Quantum, NVIDIA 2020.
+    /// sheets of ConnectX-6 and Quantum, NVIDIA 2020. Overhead and gap are assumed.
     pub const INFINIBAND: Self = Self {
         latency: 1.2e-6,
         overhead: 0.3e-6,
