@@ -4,6 +4,7 @@
 //! * [`Lattice`], [`DamBreak`]: particles. [`SweepCase`]: particles with records and lists.
 //! * [`by_hand`]: the sums of the solver written out, to count the instructions of its terms.
 //! * [`fma_flops`], [`triad_bytes`]: arithmetic and memory of this machine.
+//! * [`plot`]: SVG files.
 //! * [`Clock`], [`median`], [`peak_memory`]: measuring on a machine that others use too.
 #![forbid(unsafe_code)]
 
@@ -14,6 +15,7 @@ mod dam_break;
 mod lattice;
 mod memory;
 mod peak;
+pub mod plot;
 mod sweep_case;
 
 pub use bandwidth::{Triad, triad_bytes};

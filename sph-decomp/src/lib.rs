@@ -7,6 +7,7 @@ mod halo;
 mod migrate;
 mod partition;
 mod parts;
+pub mod scale;
 mod statistics;
 mod sums;
 mod zone;

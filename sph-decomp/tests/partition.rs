@@ -62,6 +62,35 @@ proptest! {
     }
 
     #[test]
+    fn one_process_divides_as_all_ranks_together(
+        cloud in clouds::<3>(), ranks in 1_usize..9, seed: u64,
+    ) {
+        let mut random = random(seed);
+        let weights: Vec<f64> = cloud.positions.iter().map(|_| (8.0 * random()).floor()).collect();
+        let together = ThreadRanks::run(ranks, |comm| {
+            let mine = |i: &usize| i * 31 % 7 % ranks == comm.rank();
+            let mine: Vec<usize> = (0..weights.len()).filter(mine).collect();
+            let x: Vec<_> = mine.iter().map(|&i| cloud.positions[i]).collect();
+            let w: Vec<_> = mine.iter().map(|&i| weights[i]).collect();
+            Orb::build(&comm, &x, &w)
+        });
+        let mut positions = cloud.positions.clone();
+        let mut ids: Vec<usize> = (0..weights.len()).collect();
+        let (alone, starts) =
+            Orb::divide(ranks, &mut positions, &mut ids, |&id| weights[id]).unwrap();
+        prop_assert_eq!(&alone, &together.unwrap()[0]);
+        prop_assert_eq!((starts[0], starts[ranks]), (0, weights.len()));
+        for rank in 0..ranks {
+            for place in starts[rank]..starts[rank + 1] {
+                prop_assert_eq!(positions[place], cloud.positions[ids[place]]);
+                prop_assert_eq!(alone.owner(&positions[place]), rank);
+            }
+        }
+        ids.sort_unstable();
+        prop_assert!(ids.iter().enumerate().all(|(place, id)| place == *id));
+    }
+
+    #[test]
     fn migration_loses_and_invents_nothing(
         count in 0_usize..80, ranks in 1_usize..6, seed: u64,
     ) {

@@ -7,6 +7,7 @@ pub mod eos;
 pub mod error;
 pub mod lio;
 pub mod model;
+pub mod partition;
 pub mod passes;
 pub mod physics;
 pub mod rank;

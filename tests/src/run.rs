@@ -35,6 +35,11 @@ impl Run {
         Self::command("check", scene)
     }
 
+    /// `sph partition SCENE --ranks RANKS`.
+    pub fn partition(scene: impl AsRef<Path>, ranks: &str) -> Self {
+        Self::command("partition", scene).arg("--ranks").arg(ranks)
+    }
+
     fn command(name: &str, scene: impl AsRef<Path>) -> Self {
         Self {
             arguments: vec![name.into(), scene.as_ref().into()],

@@ -3,6 +3,7 @@
 mod askew;
 mod balance;
 mod balancer;
+mod divide;
 mod hilbert;
 mod orb;
 mod splitters;
@@ -12,6 +13,7 @@ pub use askew::Askew;
 pub use balance::{Imbalance, Rebalance};
 pub use balancer::{Balancer, Evenness, Load, Review};
 pub use hilbert::HilbertCurve;
+pub(crate) use orb::HEAVY_SHARE;
 pub use orb::Orb;
 
 use crate::CommError;

@@ -1,13 +1,14 @@
 //! Weighted orthogonal recursive bisection.
 
 use super::splitters::{Keyed, Target, find};
-use super::weights::to_integers;
+use super::weights::{LARGEST, to_integers};
 use super::{Partition, PartitionError, check_positions};
 use crate::Communicator;
 use crate::zone::Aabb;
 
 /// Orthogonal recursive bisection: space is cut across its longest side so that the weights on
-/// the two sides are as the numbers of ranks there, and each side is cut again.
+/// the two sides are as the numbers of ranks there, and each side is cut again. The longest side is
+/// that of the box around the heavy particles, those of at least a quarter of the largest weight.
 ///
 /// Built by all ranks together, level by level, with histograms of weights (as in Warren and
 /// Salmon, *A parallel hashed oct-tree N-body algorithm*, 1993, and Boman et al., *Zoltan*, 2012):
@@ -16,36 +17,40 @@ use crate::zone::Aabb;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Orb<const D: usize> {
     /// The root comes first; without nodes there is one rank.
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Node {
-    axis: usize,
+pub(super) struct Node {
+    pub axis: usize,
     /// Coordinates below the cut are on the low side.
-    cut: f64,
-    low: Child,
-    high: Child,
+    pub cut: f64,
+    pub low: Child,
+    pub high: Child,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Child {
+pub(super) enum Child {
     Node(u32),
     Rank(u32),
 }
 
 /// A piece of space that is still to be divided among several ranks.
 #[derive(Debug, Clone, Copy)]
-struct Region {
-    node: u32,
-    first_rank: usize,
-    ranks: usize,
+pub(super) struct Region {
+    pub node: u32,
+    pub first_rank: usize,
+    pub ranks: usize,
 }
 
 /// Bits of a coordinate within its region that the search for a cut resolves.
 const BITS: u32 = 42;
+/// Particles of at least a quarter of the largest weight decide across which axis a region is cut.
+const HEAVY: u64 = (LARGEST * HEAVY_SHARE) as u64;
+/// That quarter.
+pub(crate) const HEAVY_SHARE: f64 = 0.25;
 /// A particle that is in no region any more, because its rank is known.
-const DONE: u32 = u32::MAX;
+pub(super) const DONE: u32 = u32::MAX;
 
 impl<const D: usize> Orb<D> {
     /// Divides the particles of all ranks. Collective.
@@ -189,21 +194,25 @@ impl<const D: usize> Partition<D> for Orb<D> {
 }
 
 /// One level of the bisection: all regions are cut at the same time.
-struct Level<'a, const D: usize> {
-    positions: &'a [[f64; D]],
-    weights: &'a [u64],
-    region_of: &'a [u32],
+pub(super) struct Level<'a, const D: usize> {
+    pub positions: &'a [[f64; D]],
+    pub weights: &'a [u64],
+    pub region_of: &'a [u32],
 }
 
 impl<const D: usize> Level<'_, D> {
     /// The axis and coordinate at which each region is cut.
-    fn cut<C: Communicator>(
+    pub fn cut<C: Communicator>(
         &self,
         comm: &C,
         regions: &[Region],
     ) -> Result<Vec<(usize, f64)>, PartitionError> {
-        let boxes = self.boxes(comm, regions.len())?;
-        let axes: Vec<usize> = boxes.iter().map(longest_side).collect();
+        let boxes = self.boxes(comm, regions.len(), 0)?;
+        // Many light particles around a few heavy ones, such as the dry walls of a tank around its
+        // water, must not decide across which axis the work is cut: it would end in thin slices.
+        let heavy = self.boxes(comm, regions.len(), HEAVY)?;
+        let axis = |(heavy, all)| longest_side(if Aabb::is_empty(heavy) { all } else { heavy });
+        let axes: Vec<usize> = heavy.iter().zip(&boxes).map(axis).collect();
         let mut totals = vec![0; regions.len()];
         let mut keyed = Vec::with_capacity(self.positions.len());
         for ((x, &weight), &group) in self.positions.iter().zip(self.weights).zip(self.region_of) {
@@ -238,15 +247,16 @@ impl<const D: usize> Level<'_, D> {
         Ok(axes.iter().zip(beside.chunks_exact(2)).map(cut).collect())
     }
 
-    /// The tight box of the particles in each region.
+    /// The tight box of the particles in each region that weigh at least so much.
     fn boxes<C: Communicator>(
         &self,
         comm: &C,
         regions: usize,
+        least: u64,
     ) -> Result<Vec<Aabb<D>>, PartitionError> {
         let mut boxes = vec![Aabb::EMPTY; regions];
-        for (x, &region) in self.positions.iter().zip(self.region_of) {
-            if region != DONE {
+        for ((x, &region), &weight) in self.positions.iter().zip(self.region_of).zip(self.weights) {
+            if region != DONE && weight >= least {
                 boxes[region as usize].add(x);
             }
         }

@@ -4,7 +4,7 @@ use super::PartitionError;
 use crate::Communicator;
 
 /// The largest weight becomes this: 2³⁰, so that 2³³ particles still sum below 2⁶⁴.
-const LARGEST: f64 = (1_u64 << 30) as f64;
+pub(super) const LARGEST: f64 = (1_u64 << 30) as f64;
 
 /// Scales weights to integers, with one scale on all ranks. An empty slice means that all are
 /// equal. Collective.

@@ -22,8 +22,9 @@ mod tree;
 
 pub use reach::{MaxReach, MeanReach, PairReach, Reach};
 
-pub(crate) use boxes::Aabb;
-use tree::{Block, BlockTree, from_bytes, tile, to_bytes};
+pub(crate) use boxes::{Aabb, Period};
+pub(crate) use tree::{Block, BlockTree, tile};
+use tree::{from_bytes, to_bytes};
 
 use crate::{CommError, Communicator, HaloPlan};
 
@@ -142,7 +143,7 @@ impl Zone {
     }
 }
 
-fn check<const D: usize>(
+pub(crate) fn check<const D: usize>(
     positions: &[[f64; D]],
     reach: Reach<'_>,
     options: &ZoneOptions<D>,

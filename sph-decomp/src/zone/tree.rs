@@ -2,10 +2,11 @@
 
 use super::boxes::{Aabb, Period};
 use super::reach::PairReach;
+use std::cmp::Ordering;
 
 /// What another rank learns of a few neighbouring particles: their tight box and farthest reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Block<const D: usize> {
+pub(crate) struct Block<const D: usize> {
     pub bounds: Aabb<D>,
     pub reach: f64,
 }
@@ -80,7 +81,7 @@ const LONGEST: f64 = 0.5;
 /// Tiles particles into blocks of at most `size`, by halving at the median of the longest side.
 ///
 /// Neighbouring blocks in the result are neighbours in space, which [`BlockTree`] relies on.
-pub(super) fn tile<const D: usize>(
+pub(crate) fn tile<const D: usize>(
     particles: &mut [u32],
     positions: &[[f64; D]],
     reach: impl Fn(u32) -> f64 + Copy,
@@ -103,9 +104,12 @@ pub(super) fn tile<const D: usize>(
     // Cuts at a multiple of the block size where there is one, so that most blocks are full.
     let half = particles.len() / 2;
     let middle = if particles.len() > size { half.div_ceil(size) * size } else { half };
-    let coordinate = |i: &u32| positions[*i as usize][axis];
-    particles.select_nth_unstable_by(middle, |a, b| {
-        coordinate(a).total_cmp(&coordinate(b)).then(a.cmp(b))
+    // On a lattice many coordinates are equal. The other axes decide then, so that the blocks, and
+    // with them the zone, do not depend on the order in which the particles are stored.
+    particles.select_nth_unstable_by(middle, |&a, &b| {
+        let (x, y) = (&positions[a as usize], &positions[b as usize]);
+        let others = || x.iter().zip(y).fold(Ordering::Equal, |o, (x, y)| o.then(x.total_cmp(y)));
+        x[axis].total_cmp(&y[axis]).then_with(others).then(a.cmp(&b))
     });
     let (low, high) = particles.split_at_mut(middle);
     tile(low, positions, reach, size, blocks);
@@ -114,7 +118,7 @@ pub(super) fn tile<const D: usize>(
 
 /// Blocks and, above each eight of them, a block that holds them all, and so on to one root.
 #[derive(Debug)]
-pub(super) struct BlockTree<const D: usize> {
+pub(crate) struct BlockTree<const D: usize> {
     /// From the blocks themselves up to the root.
     levels: Vec<Vec<Block<D>>>,
 }

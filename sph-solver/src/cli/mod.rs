@@ -8,6 +8,7 @@
 
 mod check;
 mod diagnostics;
+mod partition;
 mod progress;
 mod run;
 
@@ -35,6 +36,8 @@ enum Command {
     Run(run::RunArguments),
     /// Read a scene and everything it names, and report counts, time step, memory and cost
     Check(check::CheckArguments),
+    /// Divide a scene among many ranks without running it, and predict the time of a step
+    Partition(partition::PartitionArguments),
 }
 
 /// Which scene.
@@ -58,6 +61,7 @@ pub fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Run(arguments) => run::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
+        Command::Partition(arguments) => partition::main(&arguments),
     }
 }
 
@@ -115,6 +119,17 @@ mod tests {
     }
 
     #[test]
+    fn lists_of_ranks_are_read() {
+        let line = "sph partition a.toml --ranks 8,64,32768 --particles 1e9 --set a=1";
+        let Command::Partition(arguments) = Arguments::parse_from(line.split_whitespace()).command
+        else {
+            panic!("not a partition");
+        };
+        assert_eq!(arguments.ranks, [8, 64, 32768]);
+        assert_eq!(arguments.scene.overrides, ["a=1"]);
+    }
+
+    #[test]
     fn bad_numbers_are_refused() {
         for line in [
             "sph run a.toml --ranks 0",
@@ -122,6 +137,11 @@ mod tests {
             "sph run a.toml --end-time -1",
             "sph run a.toml --end-time nan",
             "sph check a.toml --ranks many",
+            "sph partition a.toml",
+            "sph partition a.toml --ranks 8,0",
+            "sph partition a.toml --ranks 8 --particles -1",
+            "sph partition a.toml --ranks 8 --pair-rate fast",
+            "sph partition a.toml --ranks 8 --rebuild-share 1",
             "sph run",
         ] {
             assert!(Arguments::try_parse_from(line.split_whitespace()).is_err(), "{line}");

@@ -1,6 +1,5 @@
 //! The box that particles may be in.
 
-use super::fluid::Filling;
 use crate::scene::{ErrorKind, Fluid, Scene, SceneError, vector};
 use sph_geometry::{Aabb, FluidSide, Solid};
 
@@ -38,11 +37,11 @@ pub fn check<const D: usize>(
     scene: &Scene,
     fluid: &Fluid,
     domain: &Aabb<D>,
-    filling: &Filling<D>,
+    position: &[[f64; D]],
 ) -> Result<(), SceneError> {
     let outside = |x: &&[f64; D]| !domain.contains(x);
-    let Some(first) = filling.position.iter().find(outside) else { return Ok(()) };
-    let count = filling.position.iter().filter(outside).count();
+    let Some(first) = position.iter().find(outside) else { return Ok(()) };
+    let count = position.iter().filter(outside).count();
     let what = format!(
         "{count} particles of the fluid would be outside of the domain, the first at {first:?}"
     );

@@ -5,7 +5,7 @@ use super::report::{
     BYTES_PER_FLUID_PARTICLE, BYTES_PER_WALL_PARTICLE, CheckReport, PAIRS_PER_CORE_SECOND,
     PASSES_PER_STEP, ParticleCounts, SolidCount,
 };
-use super::{Setup, memory};
+use super::{Setup, lattice_neighbours, memory};
 use crate::scene::{ErrorKind, Scene, SceneError};
 use sph_geometry::Aabb;
 
@@ -83,22 +83,4 @@ impl<const D: usize> Setup<D> {
         }
         warnings
     }
-}
-
-/// Points of a lattice of spacing 1 closer than `radius` to one of them, itself left out.
-fn lattice_neighbours<const D: usize>(radius: f64) -> usize {
-    // Support over spacing is a round number up to rounding; points at just that distance weigh 0.
-    let radius = radius * (1.0 - 1e-9);
-    let reach = radius.ceil() as i64;
-    let side = 2 * reach + 1;
-    let count = (0..side.pow(D as u32)).filter(|cell| {
-        let mut rest = *cell;
-        let mut square = 0.0;
-        for _ in 0..D {
-            square += ((rest % side - reach) as f64).powi(2);
-            rest /= side;
-        }
-        square < radius * radius
-    });
-    count.count() - 1
 }

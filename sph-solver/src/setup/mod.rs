@@ -8,19 +8,27 @@ mod constants;
 mod domain;
 mod estimate;
 mod fluid;
+mod geometry;
 mod memory;
+mod neighbours;
 mod overlap;
 mod particles;
+mod positions;
 mod report;
+mod sampling;
 mod shapes;
 mod walls;
 
 pub use constants::{Constants, StepLimit, expected_speed, time_step};
+pub use geometry::Geometry;
+pub use neighbours::{Occupancy, lattice_neighbours, lattice_neighbours_beyond};
 pub use particles::Particles;
+pub use positions::{BYTES_PER_POSITION, Positions};
 pub use report::{
     BYTES_PER_FLUID_PARTICLE, BYTES_PER_WALL_PARTICLE, CheckReport, MeshSummary,
     PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SolidCount,
 };
+pub use sampling::{BlockKind, Sample};
 
 use crate::eos::EquationOfState;
 use crate::scene::{self, At, Equation, ErrorKind, Fluid, Kernel, Region, Scene, SceneError};
@@ -54,30 +62,18 @@ const LARGEST: &str = "4.2e9 is the most";
 impl<const D: usize> Setup<D> {
     /// Makes particles and constants. Reads the meshes that the scene names.
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
-        if scene.dimension() != D {
-            let dimension = scene.dimension();
-            let kind = ErrorKind::Components { key: "dimension".into(), found: D, dimension };
-            return Err(scene.error(scene.dimension.place, kind));
-        }
+        let Geometry { solids, regions, fluid_box, lattice, domain, meshes } =
+            Geometry::<D>::read(scene, Some(memory::to_set_up::<D>(1.0)))?;
         let (fluid_name, fluid) = scene.fluid()?;
         let numerics = &scene.numerics;
         let spacing = *numerics.spacing;
-        let mut shapes = Shapes::new(scene);
-        let solids = walls::solids(scene, &mut shapes)?;
-        let regions = regions(fluid_name, fluid, &mut shapes)?;
-        let fluid_box = fluid_box(scene, fluid, &regions)?;
-
-        let lattice = Lattice::new(regions[0].bounding_box().min, spacing)
-            .map_err(|error| lattice_error(scene, numerics.spacing.place, &error))?;
         let (position, ends) = fill(scene, fluid, &regions, &lattice)?;
         overlap::check(scene, fluid_name, fluid, &solids, &position, &ends)?;
         if position.is_empty() {
             return Err(nothing(scene, fluid));
         }
         let filling = Filling::new(scene, fluid, position, ends)?;
-
-        let domain = domain::domain(scene, &solids, &fluid_box, spacing * *numerics.support);
-        domain::check(scene, fluid, &domain, &filling)?;
+        domain::check(scene, fluid, &domain, &filling.position)?;
         let gravity = scene.gravity();
         let initial_speed = filling.largest_speed();
         let expected_speed = expected_speed(&gravity, height(&gravity, &fluid_box), initial_speed);
@@ -117,7 +113,7 @@ impl<const D: usize> Setup<D> {
             solids: solids.into_iter().map(|solid| solid.name).collect(),
             expected_speed,
             initial_speed,
-            meshes: shapes.meshes,
+            meshes,
         })
     }
 }
@@ -137,11 +133,13 @@ fn regions<const D: usize>(
     fluid.regions.iter().enumerate().map(make).collect()
 }
 
-/// The box around all regions, which must be finite and hold no more cells than can be counted.
+/// The box around all regions, which must be finite. With `bytes` per particle, also no more cells
+/// than can be counted and held.
 fn fluid_box<const D: usize>(
     scene: &Scene,
     fluid: &Fluid,
     regions: &[sph_geometry::Shape<D>],
+    bytes: Option<f64>,
 ) -> Result<Aabb<D>, SceneError> {
     let mut all = Aabb::EMPTY;
     let mut cells = 0.0;
@@ -160,10 +158,11 @@ fn fluid_box<const D: usize>(
         cells += sides.map(|side| side / *scene.numerics.spacing).product::<f64>();
         all = all.union(&bounds);
     }
+    let Some(bytes) = bytes else { return Ok(all) };
     if cells > MOST_PARTICLES {
         return Err(too_many(scene, cells, LARGEST));
     }
-    let needed = memory::to_set_up::<D>(cells);
+    let needed = bytes * cells;
     if let Some(available) = memory::available().filter(|available| needed > *available) {
         let [needed, available] = [needed, available].map(memory::gibibytes);
         let why = format!("they need {needed} at the very least, and {available} are free here");

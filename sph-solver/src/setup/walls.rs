@@ -5,7 +5,7 @@ use super::particles::Particles;
 use super::shapes::Shapes;
 use super::{LARGEST, MOST_PARTICLES, lattice_error, too_many};
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
-use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Solid, wall_particles};
+use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Solid, WallParticles, wall_particles};
 
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
 const MOST_ROWS: f64 = 1e9;
@@ -44,11 +44,34 @@ pub fn add_walls<const D: usize>(
     mass: f64,
     particles: &mut Particles<D>,
 ) -> Result<(), SceneError> {
+    let bounds = Aabb::new(constants.domain.0, constants.domain.1);
+    let walls = find_walls(scene, solids, lattice, &bounds, constants.support_radius)?;
+    let total = particles.len() + walls.positions.len();
+    if total as f64 > MOST_PARTICLES {
+        return Err(too_many(scene, total as f64, LARGEST));
+    }
+    // Solid by solid; within a solid in the order of the lattice.
+    let mut order: Vec<usize> = (0..walls.positions.len()).collect();
+    order.sort_by_key(|wall| walls.solids[*wall]);
+    for wall in order {
+        let kind = 1 + walls.solids[wall] as u16;
+        particles.push(walls.positions[wall], [0.0; D], constants.density0, mass, kind);
+    }
+    Ok(())
+}
+
+/// The wall particles within `support` (m) of where fluid can be.
+pub fn find_walls<const D: usize>(
+    scene: &Scene,
+    solids: &[Solid<D>],
+    lattice: &Lattice<D>,
+    bounds: &Aabb<D>,
+    support: f64,
+) -> Result<WallParticles<D>, SceneError> {
     if solids.is_empty() {
-        return Ok(());
+        return Ok(WallParticles::default());
     }
     let place = scene.domain.as_ref().map_or(scene.numerics.spacing.place, |domain| domain.place);
-    let bounds = Aabb::new(constants.domain.0, constants.domain.1);
     let sides = (1..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
     if sides.product::<f64>() > MOST_ROWS {
         let kind = ErrorKind::Invalid {
@@ -62,18 +85,6 @@ pub fn add_walls<const D: usize>(
         };
         return Err(scene.error(place, kind));
     }
-    let walls = wall_particles(solids, lattice, constants.support_radius, &Domain::new(bounds))
-        .map_err(|error| lattice_error(scene, place, &error))?;
-    let total = particles.len() + walls.positions.len();
-    if total as f64 > MOST_PARTICLES {
-        return Err(too_many(scene, total as f64, LARGEST));
-    }
-    // Solid by solid; within a solid in the order of the lattice.
-    let mut order: Vec<usize> = (0..walls.positions.len()).collect();
-    order.sort_by_key(|wall| walls.solids[*wall]);
-    for wall in order {
-        let kind = 1 + walls.solids[wall] as u16;
-        particles.push(walls.positions[wall], [0.0; D], constants.density0, mass, kind);
-    }
-    Ok(())
+    wall_particles(solids, lattice, support, &Domain::new(*bounds))
+        .map_err(|error| lattice_error(scene, place, &error))
 }

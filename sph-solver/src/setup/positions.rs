@@ -1,0 +1,39 @@
+//! Positions without the rest of the state, for reports on fields of many particles.
+
+use super::{Geometry, domain, fill, nothing, overlap, walls};
+use crate::scene::{Scene, SceneError};
+
+/// Memory that reports on positions take per particle at their peak, bytes.
+pub const BYTES_PER_POSITION: f64 = 130.0;
+
+/// The positions that a run begins with, in the order of the ids.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Positions<const D: usize> {
+    /// Of the fluid, then of the walls, m.
+    pub position: Vec<[f64; D]>,
+    /// How many of them are fluid.
+    pub fluid: usize,
+}
+
+impl<const D: usize> Positions<D> {
+    /// Fills the shapes of a scene.
+    ///
+    /// # Errors
+    ///
+    /// Like [`Setup::new`](super::Setup::new) for all that concerns places.
+    pub fn new(scene: &Scene, geometry: &Geometry<D>) -> Result<Self, SceneError> {
+        let (name, fluid) = scene.fluid()?;
+        let Geometry { solids, regions, lattice, .. } = geometry;
+        let (mut position, ends) = fill(scene, fluid, regions, lattice)?;
+        overlap::check(scene, name, fluid, solids, &position, &ends)?;
+        if position.is_empty() {
+            return Err(nothing(scene, fluid));
+        }
+        domain::check(scene, fluid, &geometry.domain, &position)?;
+        let support = Geometry::<D>::support(scene);
+        let walls = walls::find_walls(scene, solids, lattice, &geometry.domain, support)?;
+        let fluid = position.len();
+        position.extend_from_slice(&walls.positions);
+        Ok(Self { position, fluid })
+    }
+}
