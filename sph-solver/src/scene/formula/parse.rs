@@ -152,7 +152,10 @@ impl<'a> Parser<'a> {
 
     fn atom(&mut self) -> Result<(), FormulaError> {
         match self.peek() {
-            None => Err(error("it ends where a value should follow", "")),
+            None => Err(error(
+                "it ends where a value should follow",
+                "complete it, for example 2*x + 1",
+            )),
             Some('(') => {
                 self.take('(');
                 self.deeper(Self::sum)?;
@@ -160,7 +163,10 @@ impl<'a> Parser<'a> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() || c == '_' => self.name(),
-            Some(c) => Err(error(self.place(&format!("`{c}` where a value should be")), "")),
+            Some(c) => Err(error(
+                self.place(&format!("`{c}` where a value should be")),
+                "a value is a number, a name such as x or pi, a function such as sin(x), or (…)",
+            )),
         }
     }
 
@@ -195,9 +201,12 @@ impl<'a> Parser<'a> {
                 end = exponent;
             }
         }
-        let number: f64 = rest[..end]
-            .parse()
-            .map_err(|_| error(self.place(&format!("`{}` is no number", &rest[..end])), ""))?;
+        let number: f64 = rest[..end].parse().map_err(|_| {
+            error(
+                self.place(&format!("`{}` is no number", &rest[..end])),
+                "numbers are written like 12, 0.5 or 1e-3",
+            )
+        })?;
         self.at += end;
         self.emit(Step::Number(number));
         Ok(())
@@ -211,7 +220,10 @@ impl<'a> Parser<'a> {
         if let Some((_, f)) = UNARY.iter().find(|(known, _)| *known == name) {
             let count = self.arguments(name, |_| {})?;
             if count != 1 {
-                return Err(error(format!("`{name}` needs 1 argument, found {count}"), ""));
+                return Err(error(
+                    format!("`{name}` needs 1 argument, found {count}"),
+                    format!("write {name}(x)"),
+                ));
             }
             self.emit(Step::Unary(*f));
             Ok(())
@@ -219,11 +231,11 @@ impl<'a> Parser<'a> {
             let count = self.arguments(name, |parser| parser.emit(Step::Binary(*f)))?;
             if count < 2 {
                 let reason = format!("`{name}` needs 2 arguments or more, found {count}");
-                return Err(error(reason, ""));
+                return Err(error(reason, format!("write {name}(x, y)")));
             }
             if name == "atan2" && count > 2 {
                 let reason = format!("`{name}` needs 2 arguments, found {count}");
-                return Err(error(reason, ""));
+                return Err(error(reason, "write atan2(y, x)"));
             }
             Ok(())
         } else if let Some(axis) = VARIABLES.iter().position(|known| *known == name) {
