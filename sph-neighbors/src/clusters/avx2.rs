@@ -4,26 +4,9 @@
 #![allow(unsafe_code)] // Loads and stores whose bounds are checked once a call.
 
 use super::CLUSTER;
-use super::near::{Around, LANES, Near};
+use super::near::{Around, Near};
+use crate::list::{LANES, LANES_OF};
 use core::arch::x86_64::*;
-
-/// For each pattern of hits among eight sources, the lanes that hit, first to last.
-static LANES_OF: [[u32; LANES]; 256] = {
-    let mut table = [[0; LANES]; 256];
-    let mut pattern = 0;
-    while pattern < 256 {
-        let (mut lane, mut hits) = (0, 0);
-        while lane < LANES {
-            if pattern >> lane & 1 == 1 {
-                table[pattern][hits] = lane as u32;
-                hits += 1;
-            }
-            lane += 1;
-        }
-        pattern += 1;
-    }
-    table
-};
 
 /// Keeps the sources of the rows within reach of the box.
 ///
@@ -77,7 +60,7 @@ pub fn cull<const D: usize>(columns: &[&[i32]; D], around: &Around<D>, near: &mu
             // Without those behind the end of the row.
             let here = (end - first).min(LANES);
             let pattern = hits as usize & (0xff >> (LANES - here));
-            let lanes: __m256i = bytemuck::cast(LANES_OF[pattern & 0xff]);
+            let lanes = _mm256_cvtepu16_epi32(bytemuck::cast(LANES_OF[pattern & 0xff]));
             for axis in 0..D {
                 let kept = _mm256_permutevar8x32_ps(x[axis], lanes);
                 // SAFETY: no more sources were kept than were in the rows so far, so a block fits,

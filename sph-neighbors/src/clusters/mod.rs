@@ -8,7 +8,7 @@ mod near;
 mod order;
 
 use crate::CellList;
-use crate::list::{Pool, Query};
+use crate::list::{Pool, Query, are_near};
 use fill::{Chunk, Scratch};
 pub use layout::Clusters;
 pub use order::ColumnOrder;
@@ -169,14 +169,7 @@ impl ClusterList {
         distance: f64,
     ) -> u64 {
         assert_eq!(targets.len(), self.len(), "one position per target");
-        let along = |axis: usize, d: f64| match self.periods.get(axis).copied().flatten() {
-            Some(period) => d - period * (d / period).round(),
-            None => d,
-        };
-        let near = |x: &[f64; D], y: &[f64; D]| {
-            let squares = (0..D).map(|axis| along(axis, x[axis] - y[axis]).powi(2));
-            squares.sum::<f64>() < distance * distance
-        };
+        let near = |x: &[f64; D], y: &[f64; D]| are_near(x, y, &self.periods, distance);
         let count = |cluster: usize| {
             let some = self.sources(cluster);
             let of = |t: usize| {

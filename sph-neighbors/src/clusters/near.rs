@@ -7,12 +7,9 @@ use super::CLUSTER;
 #[cfg(target_arch = "x86_64")]
 use super::avx2;
 use crate::CellList;
-use crate::list::{Group, Query};
+use crate::list::{Group, LANES, Query};
 use std::array::from_fn;
 use std::ops::Range;
-
-/// Sources that are tested against the box at a time.
-pub const LANES: usize = 8;
 
 /// Sources near the box of a cluster, in canonical order; all columns are longer than needed.
 #[derive(Debug, Default)]

@@ -6,7 +6,7 @@ use wide::{f32x8, u16x8};
 pub const LANES: usize = 8;
 
 /// For each pattern of hits among eight candidates, the lanes that hit, first to last.
-static LANES_OF: [[u16; LANES]; 256] = {
+pub static LANES_OF: [[u16; LANES]; 256] = {
     let mut table = [[0; LANES]; 256];
     let mut pattern = 0;
     while pattern < 256 {

@@ -12,6 +12,7 @@ use chunk::{CHUNK, Chunk, Scratch};
 use plan::{Plan, Uniform, Variable};
 use rayon::prelude::*;
 
+pub(crate) use compress::{LANES, LANES_OF};
 pub use plan::PairReach;
 pub(crate) use plan::radius_in_units;
 pub(crate) use pool::Pool;
@@ -219,14 +220,7 @@ impl NeighborList {
         distance: f64,
     ) -> u64 {
         assert_eq!(targets.len(), self.targets, "one position per target");
-        let along = |axis: usize, d: f64| match self.periods.get(axis).copied().flatten() {
-            Some(period) => d - period * (d / period).round(),
-            None => d,
-        };
-        let near = |x: &[f64; D], y: &[f64; D]| {
-            let squares = (0..D).map(|axis| along(axis, x[axis] - y[axis]).powi(2));
-            squares.sum::<f64>() < distance * distance
-        };
+        let near = |x: &[f64; D], y: &[f64; D]| are_near(x, y, &self.periods, distance);
         let count = |(t, x): (usize, &[f64; D])| {
             self.neighbors(t).iter().filter(|&&s| near(x, &sources[s as usize])).count() as u64
         };
@@ -251,4 +245,19 @@ impl NeighborList {
     pub fn bytes(&self) -> usize {
         self.chunks.iter().map(Chunk::bytes).sum()
     }
+}
+
+/// Whether two points, or images of them where axes have a period, are nearer than a distance.
+pub(crate) fn are_near<const D: usize>(
+    x: &[f64; D],
+    y: &[f64; D],
+    periods: &[Option<f64>],
+    distance: f64,
+) -> bool {
+    let along = |axis: usize, d: f64| match periods.get(axis).copied().flatten() {
+        Some(period) => d - period * (d / period).round(),
+        None => d,
+    };
+    let squares = (0..D).map(|axis| along(axis, x[axis] - y[axis]).powi(2));
+    squares.sum::<f64>() < distance * distance
 }

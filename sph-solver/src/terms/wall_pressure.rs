@@ -9,8 +9,13 @@ use sph_kernels::Lanes;
 /// The wall state is the mirrored one of Zhang, Hu & Adams (2017), J. Comput. Phys. 335, eq. 22–24
 /// (hydrostatic pressure, reversed normal velocity) and the dissipation their low-dissipation
 /// limiter, eq. 17 with η = 3. The part without dissipation is not allowed to pull: a wall never
-/// sucks fluid, as in the free-surface walls of Adami, Hu & Adams (2012). Tangential motion is
-/// free; add [`LaminarViscosity`](super::LaminarViscosity) for a no-slip wall.
+/// sucks fluid, as in the free-surface walls of Adami, Hu & Adams (2012). Add
+/// [`LaminarViscosity`](super::LaminarViscosity) for a no-slip wall.
+///
+/// The speed is that along each pair, not along the normal of the wall, so what flows along a wall
+/// approaches the wall particles ahead of it and is dragged: Taylor–Green vortices that touch the
+/// walls of a box 40 spacings wide lose speed 1.9 times as fast as they should. With a
+/// `sound_speed` of 0 the dissipation, and with it the drag, is gone.
 #[derive(Debug, Clone, Copy)]
 pub struct OneSidedRiemannWall<const D: usize> {
     /// Gravity less the acceleration of the wall, m/s².
