@@ -27,7 +27,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         others.iter().for_each(|solid| arrive(solid, &mut all));
         self.solid.outer = others.len();
         let cells = CellList::build(grid, &all.position, &all.id);
-        all.keep(&cells.order().to_vec());
+        all.keep(cells.order());
         let density0 = model.equation_of_state.density0();
         let write = |i: usize| {
             let weight = encoder.weight(all.mass[i] / all.density[i]);
