@@ -2,15 +2,20 @@
 
 mod chunk;
 mod compress;
+#[cfg(feature = "kiddo")]
+mod near;
 mod plan;
 mod pool;
 mod query;
 mod search;
 
+#[cfg(feature = "kiddo")]
+use crate::TreeList;
 use crate::{CellList, LevelList};
 use chunk::{CHUNK, Chunk, Scratch};
 use plan::{Plan, Uniform, Variable};
 use rayon::prelude::*;
+use std::mem::take;
 
 pub use plan::PairReach;
 pub(crate) use plan::radius_in_units;
@@ -93,7 +98,7 @@ impl NeighborList {
         let plan = Uniform { cells, query: Query::new(cells.grid(), reach) };
         self.sources = cells.len() as u32;
         self.periods = cells.grid().periods().to_vec();
-        self.fill(&plan, targets, filler, pad);
+        self.fill(&plan, |scratch| &mut scratch.search, targets, filler, pad);
     }
 
     /// Finds the sources within the reach of each pair, which follows from the radii of both.
@@ -137,12 +142,61 @@ impl NeighborList {
         let plan = Variable::new(levels, radii, rule);
         self.sources = levels.len() as u32;
         self.periods = levels.grid().periods().to_vec();
-        self.fill(&plan, targets, filler, pad);
+        self.fill(&plan, |scratch| &mut scratch.search, targets, filler, pad);
     }
 
-    fn fill<const D: usize>(
+    /// Like [`build_with_radii`](Self::build_with_radii), with k-d trees, for radii that differ by a
+    /// thousand and more. Needs the feature `kiddo`; [`TreeList`] says when to choose it.
+    ///
+    /// Other arguments are as for [`build_with_radii`](Self::build_with_radii). Distances and reaches
+    /// are computed in `f64`, and a list holds exactly the sources whose distance is then less than
+    /// the reach. Targets that are not numbers, or beyond 10¹⁵⁰, have no neighbours. Fastest when
+    /// targets are in the order of [`TreeList::order`].
+    ///
+    /// # Panics
+    ///
+    /// As [`build_with_radii`](Self::build_with_radii).
+    #[cfg(feature = "kiddo")]
+    pub fn build_with_tree<const D: usize>(
+        trees: &TreeList<D>,
+        targets: &[[f64; D]],
+        radii: &[f64],
+        filler: impl Fn(usize) -> u32 + Sync,
+        rule: PairReach,
+        pad: usize,
+    ) -> Self {
+        let mut list = Self::default();
+        list.rebuild_with_tree(trees, targets, radii, filler, rule, pad);
+        list
+    }
+
+    /// Like [`build_with_tree`](Self::build_with_tree), in the memory of this list.
+    ///
+    /// # Panics
+    ///
+    /// As [`build_with_tree`](Self::build_with_tree).
+    #[cfg(feature = "kiddo")]
+    pub fn rebuild_with_tree<const D: usize>(
         &mut self,
-        plan: &impl Plan<D>,
+        trees: &TreeList<D>,
+        targets: &[[f64; D]],
+        radii: &[f64],
+        filler: impl Fn(usize) -> u32 + Sync,
+        rule: PairReach,
+        pad: usize,
+    ) {
+        assert_eq!(targets.len(), radii.len(), "every target needs a radius");
+        let plan = near::Trees::new(trees, radii, rule);
+        self.sources = trees.len() as u32;
+        self.periods = trees.grid().periods().to_vec();
+        self.fill(&plan, |scratch| &mut scratch.near, targets, filler, pad);
+    }
+
+    /// Fills all lists; `memory` is where the scratch keeps the candidates of this kind of plan.
+    fn fill<const D: usize, P: Plan<D>>(
+        &mut self,
+        plan: &P,
+        memory: impl Fn(&mut Scratch) -> &mut P::Memory + Sync,
         targets: &[[f64; D]],
         filler: impl Fn(usize) -> u32 + Sync,
         pad: usize,
@@ -154,7 +208,12 @@ impl NeighborList {
         self.chunks.par_iter_mut().zip(targets.par_chunks(CHUNK)).enumerate().for_each(
             |(number, (chunk, targets))| {
                 let first = number * CHUNK;
-                pool.with(|scratch| chunk.fill(plan, targets, first, &filler, pad, scratch));
+                pool.with(|scratch| {
+                    let mut entries = take(&mut scratch.entries);
+                    let memory = (memory(scratch), &mut entries);
+                    chunk.fill(plan, targets, first, &filler, pad, memory);
+                    scratch.entries = entries;
+                });
             },
         );
     }
@@ -242,7 +301,8 @@ impl NeighborList {
         Some(fillers.max(self.sources.saturating_sub(1)))
     }
 
-    /// Number of distance tests that the last build took.
+    /// Number of distance tests that the last build took; with k-d trees, without those inside the
+    /// trees.
     pub fn tests(&self) -> u64 {
         self.chunks.iter().map(|chunk| chunk.tests).sum()
     }
