@@ -1,5 +1,6 @@
 //! The search in k-d trees: one query per tree for a group of targets, then a test of each pair.
 
+use super::compress::{LANES, compress};
 use super::plan::{PairReach, Plan};
 use crate::TreeList;
 use crate::trees::{Tree, TreeLevel, coordinates_of, is_inside};
@@ -7,23 +8,40 @@ use std::array::from_fn;
 use std::ops::Range;
 use wide::f64x4;
 
-/// Lanes of a test.
-const LANES: usize = 4;
+/// Blocks of candidates that are tested before their hits are read: their numbers fit 16 bits.
+const WINDOW: usize = 4096;
 
-/// Targets of a group are in a box of this edge, relative to the radius of the first. A larger box
-/// takes fewer queries and more tests; between a quarter and one the cost is about the same.
-const BOX: f64 = 0.5;
+/// Lanes of doubles.
+const HALF: usize = LANES / 2;
 
-/// Candidates of a group, in canonical order.
+/// Fills up blocks of candidates.
+const NOBODY: u32 = u32::MAX;
+
+/// Targets of a group are in a box of this edge, relative to the radius of the first. One and a half
+/// measures about the same; with one half a search takes up to 2.6 times as long, since queries cost
+/// more than tests.
+const BOX: f64 = 1.0;
+
+/// Candidates of a group, in canonical order, in whole blocks.
 #[derive(Debug, Clone, Default)]
 pub struct Near {
     /// Places in canonical order.
     places: Vec<u32>,
-    /// Coordinates by axis, and radii, in whole blocks.
+    /// Blocks of candidates, with the number of the image of the targets that they are near to.
+    images: Vec<(Range<usize>, usize)>,
+    /// Indices in the input of the trees.
+    sources: Vec<u32>,
+    tested: Tested,
+}
+
+/// What a test needs to know of candidates, and room for its hits.
+#[derive(Debug, Clone, Default)]
+struct Tested {
+    /// Coordinates by axis.
     coordinates: Vec<Vec<f64>>,
     radii: Vec<f64>,
-    /// Candidates with the image of the targets that they are near to.
-    images: Vec<(Range<usize>, usize)>,
+    /// Hits as numbers of candidates of a window.
+    hits: Vec<u16>,
 }
 
 /// The search in the trees of a [`TreeList`].
@@ -83,6 +101,7 @@ impl<'a, const D: usize> Trees<'a, D> {
         if (0..D).any(|a| centre[a] + most < level.low[a] || centre[a] - most > level.high[a]) {
             return;
         }
+        near.start(image);
         let first = near.places.len();
         level.tree.for_each_within(&centre, most, |item, distance2| {
             let place = level.first + item;
@@ -93,12 +112,6 @@ impl<'a, const D: usize> Trees<'a, D> {
             }
         });
         near.places[first..].sort_unstable();
-        let last = near.places.len();
-        match near.images.last_mut() {
-            Some((range, number)) if *number == image => range.end = last,
-            _ if first < last => near.images.push((first..last, image)),
-            _ => {}
-        }
     }
 }
 
@@ -141,6 +154,7 @@ impl<const D: usize> Plan<D> for Trees<'_, D> {
                 self.collect_level(group, level, image, near);
             }
         }
+        near.end();
         near.gather(self.trees);
     }
 
@@ -160,51 +174,111 @@ impl<const D: usize> Plan<D> for Trees<'_, D> {
         own: u32,
         found: &mut Vec<u32>,
     ) {
-        let target = coordinates_of(self.trees.grid(), target).map(f64x4::splat);
-        let mine = f64x4::splat(self.radii[t]);
-        let order = self.trees.order();
-        for (range, image) in &near.images {
-            let shift = self.shift(*image).map(f64x4::splat);
-            for block in range.start / LANES..range.end.div_ceil(LANES) {
-                let mut distance2 = f64x4::ZERO;
-                for axis in 0..D {
-                    // In this order both particles of a pair find the same distance.
-                    let x = f64x4::from(near.coordinates[axis].as_chunks().0[block]);
-                    let d = (target[axis] - x) + shift[axis];
-                    distance2 += d * d;
-                }
-                let theirs = f64x4::from(near.radii.as_chunks().0[block]);
-                let reach = match self.rule {
-                    PairReach::Mean => (mine + theirs) * f64x4::HALF,
-                    PairReach::Max => mine.fast_max(theirs),
-                };
-                let hits = distance2.simd_lt(reach * reach).to_bitmask();
-                for lane in 0..LANES {
-                    let number = block * LANES + lane;
-                    if hits >> lane & 1 == 1 && range.contains(&number) {
-                        let source = order[near.places[number] as usize];
-                        if source != own {
-                            found.push(source);
-                        }
+        let target = coordinates_of(self.trees.grid(), target);
+        for (blocks, image) in &near.images {
+            let shift = self.shift(*image);
+            for first in blocks.clone().step_by(WINDOW) {
+                let window = first..blocks.end.min(first + WINDOW);
+                let hits = match self.rule {
+                    PairReach::Mean => {
+                        let half = f64x4::splat(0.5);
+                        let reach = |mine, theirs| (mine + theirs) * half;
+                        near.tested.hits(window, &target, &shift, self.radii[t], reach)
                     }
+                    PairReach::Max => {
+                        let reach = f64x4::fast_max;
+                        near.tested.hits(window, &target, &shift, self.radii[t], reach)
+                    }
+                };
+                let sources = &near.sources[first * LANES..];
+                let start = found.len();
+                found.resize(start + hits.len(), 0);
+                let room = &mut found[start..];
+                let mut kept = 0;
+                for &hit in hits {
+                    let source = sources[usize::from(hit)];
+                    room[kept] = source;
+                    kept += usize::from(source != own);
                 }
+                found.truncate(start + kept);
             }
         }
     }
 }
 
 impl Near {
-    /// Copies what the tests need.
-    fn gather<const D: usize>(&mut self, trees: &TreeList<D>) {
-        let room = self.places.len().next_multiple_of(LANES);
-        self.coordinates.resize_with(D, Vec::new);
-        for (axis, column) in self.coordinates.iter_mut().enumerate() {
-            column.clear();
-            column.extend(self.places.iter().map(|&p| trees.coordinates()[p as usize][axis]));
-            column.resize(room, f64::INFINITY);
+    /// What follows are candidates near this image of the targets.
+    fn start(&mut self, image: usize) {
+        if self.images.last().is_none_or(|last| last.1 != image) {
+            self.end();
+            let block = self.places.len() / LANES;
+            self.images.push((block..block, image));
         }
-        self.radii.clear();
-        self.radii.extend(self.places.iter().map(|&p| trees.radii()[p as usize]));
-        self.radii.resize(room, 0.0);
+    }
+
+    /// Ends the candidates near an image.
+    fn end(&mut self) {
+        self.places.resize(self.places.len().next_multiple_of(LANES), NOBODY);
+        if let Some((blocks, _)) = self.images.last_mut() {
+            blocks.end = self.places.len() / LANES;
+        }
+    }
+
+    /// Copies what the tests need. Nobody hits the candidates that fill up a block.
+    fn gather<const D: usize>(&mut self, trees: &TreeList<D>) {
+        let Tested { coordinates, radii, hits } = &mut self.tested;
+        let places = || self.places.iter().map(|&place| place as usize);
+        coordinates.resize_with(D, Vec::new);
+        for (axis, column) in coordinates.iter_mut().enumerate() {
+            let along = |x: &[f64; D]| x[axis];
+            column.clear();
+            column
+                .extend(places().map(|p| trees.coordinates().get(p).map_or(f64::INFINITY, along)));
+        }
+        radii.clear();
+        radii.extend(places().map(|p| trees.radii().get(p).copied().unwrap_or(0.0)));
+        self.sources.clear();
+        self.sources.extend(places().map(|p| trees.order().get(p).copied().unwrap_or(0)));
+        hits.resize(hits.len().max(WINDOW.min(self.places.len() / LANES) * LANES + LANES), 0);
+    }
+}
+
+impl Tested {
+    /// Numbers of the candidates in reach among some blocks, from the first of these on.
+    ///
+    /// `reach` is that of a pair, given both radii.
+    #[inline(always)]
+    fn hits<const D: usize>(
+        &mut self,
+        blocks: Range<usize>,
+        target: &[f64; D],
+        shift: &[f64; D],
+        radius: f64,
+        reach: impl Fn(f64x4, f64x4) -> f64x4,
+    ) -> &[u16] {
+        let columns: [&[[f64; HALF]]; D] =
+            from_fn(|axis| &self.coordinates[axis].as_chunks().0[2 * blocks.start..2 * blocks.end]);
+        let radii = &self.radii.as_chunks().0[2 * blocks.start..2 * blocks.end];
+        let (target, shift) = (target.map(f64x4::splat), shift.map(f64x4::splat));
+        let radius = f64x4::splat(radius);
+        let pattern = |half: usize| {
+            let mut distance2 = f64x4::ZERO;
+            for axis in 0..D {
+                // In this order both particles of a pair find the same distance.
+                let d = (target[axis] - f64x4::from(columns[axis][half])) + shift[axis];
+                distance2 += d * d;
+            }
+            let reach = reach(radius, f64x4::from(radii[half]));
+            distance2.simd_lt(reach * reach).to_bitmask() as u8
+        };
+        let mut n = 0;
+        for block in 0..blocks.len() {
+            let Some(room) = self.hits[n..].first_chunk_mut() else {
+                break;
+            };
+            let pattern = pattern(2 * block) | pattern(2 * block + 1) << HALF;
+            n += compress(pattern, (block * LANES) as u16, room);
+        }
+        &self.hits[..n]
     }
 }
