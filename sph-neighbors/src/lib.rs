@@ -3,8 +3,8 @@
 //! * [`Grid`]: cells and fixed-point coordinates that depend on an origin and a cell size only.
 //! * [`CellList`]: particles sorted by cell, then by id.
 //! * [`LevelList`]: the same for particles of different radii, in several grids.
-//! * `TreeList`, with the feature `kiddo`: the same for radii that differ by a thousand and more, in
-//!   one k-d tree per factor of two.
+//! * `TreeList`, with the feature `kiddo`: the same for radii that differ by more than 1 : 10⁴,
+//!   in one k-d tree per factor of two.
 //! * [`NeighborList`]: who is within reach of whom.
 //! * [`ClusterList`]: who is within reach of any of eight targets that are close together.
 //!

@@ -221,11 +221,10 @@ fn test<const D: usize>(
     let mut kept = 0;
     for (k, &place) in near.places[..near.length].iter().enumerate() {
         let mut distance2 = [0.0_f32; CLUSTER];
-        for axis in 0..D {
-            let x = near.coordinates[axis][k];
-            for lane in 0..CLUSTER {
-                let d = targets[axis][lane] - x;
-                distance2[lane] += d * d;
+        for (targets, column) in targets.iter().zip(&near.coordinates) {
+            for (distance2, target) in distance2.iter_mut().zip(targets) {
+                let d = target - column[k];
+                *distance2 += d * d;
             }
         }
         let mut any = false;

@@ -8,9 +8,9 @@ mod plan;
 mod pool;
 mod query;
 mod search;
-
 #[cfg(feature = "kiddo")]
-use crate::TreeList;
+mod with_tree;
+
 use crate::{CellList, LevelList};
 use chunk::{CHUNK, Chunk, Scratch};
 use plan::{Plan, Uniform, Variable};
@@ -143,53 +143,6 @@ impl NeighborList {
         self.sources = levels.len() as u32;
         self.periods = levels.grid().periods().to_vec();
         self.fill(&plan, |scratch| &mut scratch.search, targets, filler, pad);
-    }
-
-    /// Like [`build_with_radii`](Self::build_with_radii), with k-d trees, for radii that differ by a
-    /// thousand and more. Needs the feature `kiddo`; [`TreeList`] says when to choose it.
-    ///
-    /// Other arguments are as for [`build_with_radii`](Self::build_with_radii). Distances and reaches
-    /// are computed in `f64`, and a list holds exactly the sources whose distance is then less than
-    /// the reach. Targets that are not numbers, or beyond 10¹⁵⁰, have no neighbours. Fastest when
-    /// targets are in the order of [`TreeList::order`].
-    ///
-    /// # Panics
-    ///
-    /// As [`build_with_radii`](Self::build_with_radii).
-    #[cfg(feature = "kiddo")]
-    pub fn build_with_tree<const D: usize>(
-        trees: &TreeList<D>,
-        targets: &[[f64; D]],
-        radii: &[f64],
-        filler: impl Fn(usize) -> u32 + Sync,
-        rule: PairReach,
-        pad: usize,
-    ) -> Self {
-        let mut list = Self::default();
-        list.rebuild_with_tree(trees, targets, radii, filler, rule, pad);
-        list
-    }
-
-    /// Like [`build_with_tree`](Self::build_with_tree), in the memory of this list.
-    ///
-    /// # Panics
-    ///
-    /// As [`build_with_tree`](Self::build_with_tree).
-    #[cfg(feature = "kiddo")]
-    pub fn rebuild_with_tree<const D: usize>(
-        &mut self,
-        trees: &TreeList<D>,
-        targets: &[[f64; D]],
-        radii: &[f64],
-        filler: impl Fn(usize) -> u32 + Sync,
-        rule: PairReach,
-        pad: usize,
-    ) {
-        assert_eq!(targets.len(), radii.len(), "every target needs a radius");
-        let plan = near::Trees::new(trees, radii, rule);
-        self.sources = trees.len() as u32;
-        self.periods = trees.grid().periods().to_vec();
-        self.fill(&plan, |scratch| &mut scratch.near, targets, filler, pad);
     }
 
     /// Fills all lists; `memory` is where the scratch keeps the candidates of this kind of plan.

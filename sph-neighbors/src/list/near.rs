@@ -78,7 +78,7 @@ impl<'a, const D: usize> Trees<'a, D> {
     /// no shift, up, down, as in the other searches.
     fn shift(&self, image: usize) -> [f64; D] {
         let periods = self.trees.grid().periods();
-        from_fn(|axis| match (periods[axis], image / 3_usize.pow(axis as u32) % 3) {
+        from_fn(|axis| match (periods[axis], digit(image, axis)) {
             (Some(period), 1) => period,
             (Some(period), 2) => -period,
             _ => 0.0,
@@ -88,7 +88,7 @@ impl<'a, const D: usize> Trees<'a, D> {
     /// Whether an image with this number exists.
     fn is_image(&self, image: usize) -> bool {
         let periods = self.trees.grid().periods();
-        (0..D).all(|axis| image / 3_usize.pow(axis as u32) % 3 == 0 || periods[axis].is_some())
+        (0..D).all(|axis| digit(image, axis) == 0 || periods[axis].is_some())
     }
 
     /// Adds the candidates of a level, near an image of a group.
@@ -204,6 +204,11 @@ impl<const D: usize> Plan<D> for Trees<'_, D> {
             }
         }
     }
+}
+
+/// Digit of the number of an image that belongs to an axis.
+fn digit(image: usize, axis: usize) -> usize {
+    image / 3_usize.pow(axis as u32) % 3
 }
 
 impl Near {
