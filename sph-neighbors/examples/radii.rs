@@ -1,6 +1,8 @@
 //! Compares the search with radii that differ by a factor of 8 with the search within one reach.
 //!
-//! `cargo run --release --example radii -- 100000` takes that many particles.
+//! `cargo run --release --example radii -- 100000` takes that many particles. To single a search out,
+//! for callgrind: `radii 50000 one 5` searches 5 times within one reach; `equal` and `differ` search
+//! with equal and with different radii, by their mean.
 //!
 //! Particles fill a pyramid whose cross-section and spacing grow together, so that there are as many
 //! large particles along its axis as small ones, and a straight bar with one spacing.
@@ -24,6 +26,9 @@ struct Particles {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let n = std::env::args().nth(1).map_or(Ok(50_000), |n| n.parse::<usize>())?;
+    let only = std::env::args().nth(2);
+    let chosen = |case: &str| only.as_deref().is_none_or(|only| only == case);
+    let repeats = std::env::args().nth(3).map_or(Ok(30), |r| r.parse::<usize>())?;
 
     let bar = pyramid(n, 1.0);
     let grid = Grid::new([0.0; 3], RADIUS)?;
@@ -31,13 +36,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     let bar = bar.sorted(&order);
     let mut cells = CellList::build(&grid, &bar.positions, &bar.ids);
     let mut list = NeighborList::default();
-    let one = measure("one reach", n, &mut list, |list| {
-        cells.rebuild(&grid, &bar.positions, &bar.ids);
-        list.rebuild(&cells, &bar.positions, |t| t as u32, RADIUS, 8);
-        Ok(())
-    })?;
+    let mut one = f64::NAN;
+    if chosen("one") {
+        one = measure("one reach", n, repeats, &mut list, |list| {
+            cells.rebuild(&grid, &bar.positions, &bar.ids);
+            list.rebuild(&cells, &bar.positions, |t| t as u32, RADIUS, 8);
+            Ok(())
+        })?;
+    }
 
-    for (name, spread) in [("equal radii", 1.0), ("radii 1 : 8", SPREAD)] {
+    for (case, name, spread) in [("equal", "equal radii", 1.0), ("differ", "radii 1 : 8", SPREAD)] {
+        if !chosen(case) {
+            continue;
+        }
         let particles = pyramid(n, spread);
         let largest = particles.radii.iter().copied().fold(0.0, f64::max);
         let grid = Grid::new([0.0; 3], largest / 2.0)?;
@@ -45,14 +56,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         let order: Vec<u32> = LevelList::build(&grid, positions, radii, ids)?.order().collect();
         let Particles { positions, radii, ids } = &particles.sorted(&order);
         let mut levels = LevelList::build(&grid, positions, radii, ids)?;
-        for rule in [PairReach::Mean, PairReach::Max] {
+        let rules: &[PairReach] =
+            if only.is_some() { &[PairReach::Mean] } else { &[PairReach::Mean, PairReach::Max] };
+        for &rule in rules {
             let name = format!("{name}, {rule:?}");
-            let cost = measure(&name, n, &mut list, |list| {
+            let cost = measure(&name, n, repeats, &mut list, |list| {
                 levels.rebuild(&grid, positions, radii, ids)?;
                 list.rebuild_with_radii(&levels, positions, radii, |t| t as u32, rule, 8);
                 Ok(())
             })?;
-            println!("    {:.2} × one reach, per neighbour", cost / one);
+            if only.is_none() {
+                println!("    {:.2} × one reach, per neighbour", cost / one);
+            }
         }
     }
     Ok(())
@@ -62,11 +77,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn measure(
     name: &str,
     n: usize,
+    repeats: usize,
     list: &mut NeighborList,
     mut search: impl FnMut(&mut NeighborList) -> Result<(), Box<dyn Error>>,
 ) -> Result<f64, Box<dyn Error>> {
     let mut best = f64::INFINITY;
-    for _ in 0..30 {
+    for _ in 0..repeats {
         let start = Instant::now();
         search(list)?;
         best = best.min(start.elapsed().as_secs_f64() * 1e9);

@@ -220,13 +220,20 @@ impl<const D: usize> Grid<D> {
     /// Fixed-point coordinate along an axis.
     #[inline]
     pub(crate) fn fixed_axis(&self, x: &[f64; D], axis: usize) -> i64 {
+        let inside = self.inside(x, axis);
+        match self.periods[axis] {
+            None => floor(inside * self.units_per_length),
+            Some(_) => floor(inside * self.units_per_length).clamp(0, self.period_units[axis] - 1),
+        }
+    }
+
+    /// Coordinate relative to the origin, of the image inside the box.
+    #[inline]
+    pub(crate) fn inside(&self, x: &[f64; D], axis: usize) -> f64 {
         let x = x[axis] - self.origin[axis];
         match self.periods[axis] {
-            None => floor(x * self.units_per_length),
-            Some(period) => {
-                let inside = x - period * floor(x / period) as f64;
-                floor(inside * self.units_per_length).clamp(0, self.period_units[axis] - 1)
-            }
+            None => x,
+            Some(period) => x - period * floor(x / period) as f64,
         }
     }
 
@@ -249,7 +256,7 @@ impl<const D: usize> Grid<D> {
 
 /// The largest integer not above `x`; `f64::floor` is a slow call on plain x86-64.
 #[inline]
-fn floor(x: f64) -> i64 {
+pub(crate) fn floor(x: f64) -> i64 {
     let truncated = x as i64;
     truncated.saturating_sub(i64::from(truncated as f64 > x))
 }

@@ -24,25 +24,28 @@ pub struct Chunk {
 /// Working memory of a task.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    search: Search,
-    entries: Vec<u32>,
+    pub search: Search,
+    #[cfg(feature = "kiddo")]
+    pub near: super::near::Near,
+    pub entries: Vec<u32>,
 }
 
 impl Chunk {
     /// Finds the neighbours of the targets from `first` on.
-    pub fn fill<const D: usize>(
+    ///
+    /// `memory` and `spare` are of the task, with whatever earlier chunks left in them.
+    pub fn fill<const D: usize, P: Plan<D>>(
         &mut self,
-        plan: &impl Plan<D>,
+        plan: &P,
         targets: &[[f64; D]],
         first: usize,
         filler: impl Fn(usize) -> u32,
         pad: usize,
-        scratch: &mut Scratch,
+        (memory, spare): (&mut P::Memory, &mut Vec<u32>),
     ) {
-        let search = &mut scratch.search;
         // The first time, entries are collected elsewhere to learn how many they are.
         let known = self.entries.capacity() > 0;
-        let mut entries = take(if known { &mut self.entries } else { &mut scratch.entries });
+        let mut entries = take(if known { &mut self.entries } else { &mut *spare });
         (self.pairs, self.tests, self.largest_filler) = (0, 0, 0);
         self.spans.clear();
         entries.clear();
@@ -50,19 +53,18 @@ impl Chunk {
         while next < targets.len() {
             let (length, group) = plan.group(first + next, &targets[next..]);
             if let Some(group) = &group {
-                search.clear::<D>();
-                plan.collect(group, search);
+                plan.collect(group, memory);
                 if length >= CULL {
-                    self.tests += search.candidates() as u64;
-                    plan.cull(group, search);
+                    self.tests += P::candidates(memory) as u64;
+                    plan.cull(group, memory);
                 }
             }
             for (k, x) in targets.iter().enumerate().skip(next).take(length) {
                 let start = entries.len();
                 let filler = filler(first + k);
                 if let Some(group) = &group {
-                    plan.test(group, first + k, x, search, filler, &mut entries);
-                    self.tests += search.candidates() as u64;
+                    plan.test(group, first + k, x, memory, filler, &mut entries);
+                    self.tests += P::candidates(memory) as u64;
                 }
                 let count = entries.len() - start;
                 entries.resize(start + count.next_multiple_of(pad), filler);
@@ -78,7 +80,7 @@ impl Chunk {
             // A little more, so that a later build with a few more neighbours fits.
             self.entries.reserve_exact(entries.len() + entries.len() / 32);
             self.entries.extend_from_slice(&entries);
-            scratch.entries = entries;
+            *spare = entries;
         }
     }
 

@@ -2,15 +2,20 @@
 
 mod chunk;
 mod compress;
+#[cfg(feature = "kiddo")]
+mod near;
 mod plan;
 mod pool;
 mod query;
 mod search;
+#[cfg(feature = "kiddo")]
+mod with_tree;
 
 use crate::{CellList, LevelList};
 use chunk::{CHUNK, Chunk, Scratch};
 use plan::{Plan, Uniform, Variable};
 use rayon::prelude::*;
+use std::mem::take;
 
 pub(crate) use compress::{LANES, LANES_OF};
 pub use plan::PairReach;
@@ -94,7 +99,7 @@ impl NeighborList {
         let plan = Uniform { cells, query: Query::new(cells.grid(), reach) };
         self.sources = cells.len() as u32;
         self.periods = cells.grid().periods().to_vec();
-        self.fill(&plan, targets, filler, pad);
+        self.fill(&plan, |scratch| &mut scratch.search, targets, filler, pad);
     }
 
     /// Finds the sources within the reach of each pair, which follows from the radii of both.
@@ -138,12 +143,14 @@ impl NeighborList {
         let plan = Variable::new(levels, radii, rule);
         self.sources = levels.len() as u32;
         self.periods = levels.grid().periods().to_vec();
-        self.fill(&plan, targets, filler, pad);
+        self.fill(&plan, |scratch| &mut scratch.search, targets, filler, pad);
     }
 
-    fn fill<const D: usize>(
+    /// Fills all lists; `memory` is where the scratch keeps the candidates of this kind of plan.
+    fn fill<const D: usize, P: Plan<D>>(
         &mut self,
-        plan: &impl Plan<D>,
+        plan: &P,
+        memory: impl Fn(&mut Scratch) -> &mut P::Memory + Sync,
         targets: &[[f64; D]],
         filler: impl Fn(usize) -> u32 + Sync,
         pad: usize,
@@ -155,7 +162,12 @@ impl NeighborList {
         self.chunks.par_iter_mut().zip(targets.par_chunks(CHUNK)).enumerate().for_each(
             |(number, (chunk, targets))| {
                 let first = number * CHUNK;
-                pool.with(|scratch| chunk.fill(plan, targets, first, &filler, pad, scratch));
+                pool.with(|scratch| {
+                    let mut entries = take(&mut scratch.entries);
+                    let memory = (memory(scratch), &mut entries);
+                    chunk.fill(plan, targets, first, &filler, pad, memory);
+                    scratch.entries = entries;
+                });
             },
         );
     }
@@ -236,7 +248,8 @@ impl NeighborList {
         Some(fillers.max(self.sources.saturating_sub(1)))
     }
 
-    /// Number of distance tests that the last build took.
+    /// Number of distance tests that the last build took; with k-d trees, without those inside the
+    /// trees.
     pub fn tests(&self) -> u64 {
         self.chunks.iter().map(|chunk| chunk.tests).sum()
     }

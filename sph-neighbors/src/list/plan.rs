@@ -32,15 +32,21 @@ pub trait Plan<const D: usize>: Sync {
     /// A group of targets.
     type Group;
 
+    /// Where the candidates of a group are kept.
+    type Memory;
+
     /// The group that starts `targets`, the first of which has the number `first`, with its length;
     /// none for a target that has no place.
     fn group(&self, first: usize, targets: &[[f64; D]]) -> (usize, Option<Self::Group>);
 
-    /// Adds the candidates of a group.
-    fn collect(&self, group: &Self::Group, search: &mut Search);
+    /// Finds the candidates of a group, in place of those of the last one.
+    fn collect(&self, group: &Self::Group, memory: &mut Self::Memory);
 
     /// Drops candidates that no target of the group can reach.
-    fn cull(&self, group: &Self::Group, search: &mut Search);
+    fn cull(&self, group: &Self::Group, memory: &mut Self::Memory);
+
+    /// Number of candidates.
+    fn candidates(memory: &Self::Memory) -> usize;
 
     /// Appends the neighbours of target number `t` of the group, but for `own`.
     fn test(
@@ -48,7 +54,7 @@ pub trait Plan<const D: usize>: Sync {
         group: &Self::Group,
         t: usize,
         target: &[f64; D],
-        search: &mut Search,
+        memory: &mut Self::Memory,
         own: u32,
         found: &mut Vec<u32>,
     );
@@ -63,6 +69,7 @@ pub struct Uniform<'a, const D: usize> {
 
 impl<const D: usize> Plan<D> for Uniform<'_, D> {
     type Group = Group<D>;
+    type Memory = Search;
 
     fn group(&self, _: usize, targets: &[[f64; D]]) -> (usize, Option<Group<D>>) {
         let Query { group_cells, drop, .. } = self.query;
@@ -70,12 +77,17 @@ impl<const D: usize> Plan<D> for Uniform<'_, D> {
     }
 
     fn collect(&self, group: &Group<D>, search: &mut Search) {
+        search.clear::<D>();
         search.collect(self.cells, group, self.query.reach, self.query.drop, None, |_| None);
     }
 
     fn cull(&self, group: &Group<D>, search: &mut Search) {
         let threshold = f32x8::splat(self.query.threshold);
         search.cull(group, self.query.drop, |_, _| threshold);
+    }
+
+    fn candidates(search: &Search) -> usize {
+        search.candidates()
     }
 
     fn test(
@@ -128,6 +140,7 @@ pub struct GroupWithRadius<const D: usize> {
 
 impl<const D: usize> Plan<D> for Variable<'_, D> {
     type Group = GroupWithRadius<D>;
+    type Memory = Search;
 
     fn group(&self, first: usize, targets: &[[f64; D]]) -> (usize, Option<Self::Group>) {
         let grid = self.levels.grid();
@@ -145,6 +158,7 @@ impl<const D: usize> Plan<D> for Variable<'_, D> {
     }
 
     fn collect(&self, group: &Self::Group, search: &mut Search) {
+        search.clear::<D>();
         for level in self.levels.levels() {
             let reach = |radius: f32| self.rule.of(f64::from(group.radius), f64::from(radius));
             let closer = |cells: Range<usize>| {
@@ -162,6 +176,10 @@ impl<const D: usize> Plan<D> for Variable<'_, D> {
             PairReach::Mean => search.cull(&group.group, 0, mean(group.radius)),
             PairReach::Max => search.cull(&group.group, 0, max(group.radius)),
         }
+    }
+
+    fn candidates(search: &Search) -> usize {
+        search.candidates()
     }
 
     fn test(
