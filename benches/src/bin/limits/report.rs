@@ -32,16 +32,17 @@ pub fn print_sweeps(rows: &[SweepRow]) {
     println!();
     println!("sweeps, per core: rates are of pairs within the support");
     println!(
-        "| precision | particles | support | neighbours (lanes) | density visits M/s | \
+        "| precision | particles | support | skin | neighbours (lanes) | density visits M/s | \
          force visits M/s | δ-SPH pairs M/s | of FMA peak | 2 threads |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     for row in rows {
         println!(
-            "| {} | {} | {} | {:.0} ({:.0}) | {:.0} | {:.0} | {:.0} | {:.3} | {:.2} × |",
+            "| {} | {} | {} | {} | {:.0} ({:.0}) | {:.0} | {:.0} | {:.0} | {:.3} | {:.2} × |",
             row.precision,
             row.particles,
             row.support,
+            row.skin,
             row.neighbors,
             row.lanes,
             row.density_visits * 1e-6,

@@ -12,9 +12,9 @@ use std::error::Error;
 /// sweep. A convention, for comparison with other codes; divisions and roots count as one.
 const FLOPS_PER_PAIR: f64 = 60.0;
 
-/// Skin of the lists in support radii, as in the solver: rates are of pairs within the support, but a
-/// sweep works on every lane.
-const SKIN: f64 = 0.15;
+/// Skin of the lists in support radii: that of the solver, and none. Rates are of pairs within the
+/// support, but a sweep works on every lane.
+const SKINS: [f64; 2] = [0.15, 0.0];
 
 /// Rates of the sweeps on one case.
 #[derive(Debug, Serialize)]
@@ -25,6 +25,8 @@ pub struct SweepRow {
     pub particles: usize,
     /// Support radius / spacing.
     pub support: f64,
+    /// Skin / support radius.
+    pub skin: f64,
     /// Mean number of neighbours within the support radius.
     pub neighbors: f64,
     /// Mean number of lanes that are computed for a particle: pairs, and what is beyond the support
@@ -48,9 +50,9 @@ pub fn measure(effort: Effort) -> Result<Vec<SweepRow>, Box<dyn Error>> {
     let mut rows = Vec::new();
     for &count in counts {
         // The support of the comparison with other codes, and one with 76 neighbours.
-        for support in [2.63, 3.46] {
-            rows.push(case::<f32>("mixed", count, support, effort)?);
-            rows.push(case::<f64>("double", count, support, effort)?);
+        for (support, skin) in [2.63, 3.46].iter().flat_map(|&s| SKINS.map(|skin| (s, skin))) {
+            rows.push(case::<f32>("mixed", count, support, skin, effort)?);
+            rows.push(case::<f64>("double", count, support, skin, effort)?);
         }
     }
     Ok(rows)
@@ -60,9 +62,10 @@ fn case<S: Real>(
     precision: &'static str,
     count: usize,
     support: f64,
+    skin: f64,
     effort: Effort,
 ) -> Result<SweepRow, Box<dyn Error>> {
-    let case = SweepCase::<S>::new(count, support, SKIN);
+    let case = SweepCase::<S>::new(count, support, skin);
     let radius = case.scale.support_radius;
     let mut density_rates = vec![0.0; case.len()];
     let mut accelerations = vec![Acceleration::default(); case.len()];
@@ -90,6 +93,7 @@ fn case<S: Real>(
         precision,
         particles: case.len(),
         support,
+        skin,
         neighbors: pairs / case.len() as f64,
         lanes: case.list.lanes() as f64 / case.len() as f64,
         density_visits: middle(&|_, one, _| pairs / one.0.core),
