@@ -28,7 +28,7 @@ struct Arguments {
     #[arg(long, default_value = "gemini")]
     network: String,
     /// List entries that a core evaluates per second; the default is what the README measures
-    #[arg(long, default_value_t = 9.2e8)]
+    #[arg(long, default_value_t = 1.2e9)]
     pair_rate: f64,
     /// Message elements that a core packs per second [default: measured]
     #[arg(long)]
