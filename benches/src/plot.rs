@@ -142,12 +142,13 @@ impl Plot {
     }
 }
 
-/// Plots side by side as the text of an SVG file. `note` says where they come from.
+/// Plots side by side as the text of an SVG file. `note` says where they come from; it is no XML
+/// comment, in which the two hyphens of an option would be an error.
 pub fn side_by_side(plots: &[Plot], note: &str) -> String {
     let width = WIDTH * plots.len() as f64;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {HEIGHT}\" \
-         font-family=\"sans-serif\" font-size=\"12\">\n<!-- {note} -->\n\
+         font-family=\"sans-serif\" font-size=\"12\">\n<desc>{note}</desc>\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
     for (number, plot) in plots.iter().enumerate() {
@@ -182,7 +183,8 @@ mod tests {
         assert_eq!(plot.place(1.0, 1.0), (LEFT, HEIGHT - BOTTOM));
         assert_eq!(plot.place(4.0, 16.0), (0.5 * (LEFT + WIDTH - RIGHT), TOP));
         assert_eq!(plot.ticks().0, [1.0, 4.0, 16.0]);
-        let svg = side_by_side(&[plot.clone(), plot], "a command");
+        let svg = side_by_side(&[plot.clone(), plot], "a command --option");
+        assert!(svg.contains("<desc>a command --option</desc>"));
         assert_eq!(svg.matches("stroke=\"red\"").count(), 4);
         assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
     }

@@ -5,33 +5,33 @@ mod common;
 use common::{Cloud, random};
 use sph_decomp::scale::{Layout, Point, RankLoad};
 use sph_decomp::{
-    Communicator, MaxReach, Orb, Partition, Parts, Reach, ThreadRanks, Zone, ZoneOptions, migrate,
+    Askew, Communicator, MaxReach, Orb, Partition, Parts, Reach, ThreadRanks, Zone, ZoneOptions,
+    migrate,
 };
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-/// What ranks hold after a rebuild: local, inner and outer active particles, and outer passive ones.
+/// What ranks hold after a rebuild: local, inner and outer active particles, and passive ones.
 fn run(positions: &[[f64; 3]], points: &[Point], ranks: usize, reach: f64) -> Vec<[usize; 4]> {
     let result = ThreadRanks::run(ranks, |comm| {
         let mine: Vec<usize> = (0..points.len()).filter(|i| i % ranks == comm.rank()).collect();
         let mut x: Vec<_> = mine.iter().map(|&i| positions[i]).collect();
         let mut active: Vec<u8> = mine.iter().map(|&i| u8::from(points[i].active)).collect();
         let costs: Vec<f64> = mine.iter().map(|&i| f64::from(points[i].cost)).collect();
-        let owners = Orb::build(&comm, &x, &costs)?.owners(&x);
+        let orb = Orb::build(&comm, &Askew::view(&x), &costs)?;
+        let owners = Askew::new(orb).owners(&x);
         migrate(&comm, &owners, &mut (&mut x, &mut active))?;
+        let owned = x.len();
+        let mut flags = active.iter();
+        x.retain(|_| flags.next() == Some(&1));
         let zone =
             Zone::build(&comm, &x, Reach::Uniform(reach), MaxReach, &ZoneOptions::default())?;
         let plan = zone.into_plan(&comm)?;
-        let inner = plan.is_inner(x.len());
         let mut halo = sph_decomp::Halo::<u8>::new();
-        let outer = halo.exchange_now(&comm, &plan, |i| active[i as usize])?.to_vec();
+        let outer = halo.exchange_now(&comm, &plan, |_| 1)?.len();
         let (parts, _) = Parts::arrange(x.len(), &plan, |i| i);
-        assert_eq!(parts.outer, outer.len());
-        let count = |is_inner: bool| {
-            (0..x.len()).filter(|&i| active[i] == 1 && inner[i] == is_inner).count()
-        };
-        let near = outer.iter().filter(|&&one| one == 1).count();
-        Ok::<_, Failure>([count(false), count(true), near, outer.len() - near])
+        assert_eq!(parts.outer, outer);
+        Ok::<_, Failure>([parts.local, parts.inner, parts.outer, owned - x.len()])
     });
     result.unwrap()
 }
@@ -57,7 +57,7 @@ fn one_process_counts_what_ranks_hold() {
             let layout =
                 Layout::of_points(ranks, &mut x, &mut p, 0.33, &ZoneOptions::default()).unwrap();
             let counted = |load: &RankLoad| {
-                [load.local, load.inner, load.outer, load.outer_passive].map(|n| n as usize)
+                [load.local, load.inner, load.outer, load.passive].map(|n| n as usize)
             };
             let counted: Vec<_> = layout.ranks.iter().map(counted).collect();
             assert_eq!(counted, expected, "{ranks} ranks, jitter {jitter}");
@@ -66,6 +66,40 @@ fn one_process_counts_what_ranks_hold() {
             let active = points.iter().filter(|point| point.active).count();
             assert_eq!(layout.sum(RankLoad::pairs), active as f64);
         }
+    }
+}
+
+#[test]
+fn passive_particles_are_needed_where_active_ones_are_near() {
+    // A floor along all of it, water on the left half only; ranks side by side.
+    let at = |i: i32, j: i32| [f64::from(i), f64::from(j)];
+    let floor = (0..40).map(|i| (at(i, -1), false));
+    let water = (0..20).flat_map(|i| (0..4).map(move |j| (at(i, j), true)));
+    let all: Vec<([f64; 2], bool)> = floor.chain(water).collect();
+    let reach = 2.5;
+    for ranks in [2, 3, 5] {
+        let mut x: Vec<[f64; 2]> = all.iter().map(|one| one.0).collect();
+        let mut points: Vec<Point> = all
+            .iter()
+            .map(|&(_, active)| Point { active, cost: if active { 2.0 } else { 0.5 }, pairs: 1.0 })
+            .collect();
+        let options = ZoneOptions { block: 1, ..ZoneOptions::default() };
+        let layout = Layout::of_points(ranks, &mut x, &mut points, reach, &options).unwrap();
+        let mut start = 0;
+        for load in &layout.ranks {
+            let end = start + (load.active() + load.passive) as usize;
+            let near = |i: &usize| {
+                let d2 = |j: usize| (x[*i][0] - x[j][0]).powi(2) + (x[*i][1] - x[j][1]).powi(2);
+                (start..end).any(|j| points[j].active && d2(j) < reach * reach)
+            };
+            let others = (0..x.len()).filter(|i| !(start..end).contains(i));
+            let needed: Vec<usize> = others.filter(near).collect();
+            let passive = needed.iter().filter(|&&i| !points[i].active).count() as f64;
+            assert_eq!((load.outer_passive, load.repeated_pairs), (passive, passive));
+            assert_eq!(load.outer, needed.len() as f64 - passive);
+            start = end;
+        }
+        assert!(layout.sum(|load| load.outer_passive) > 0.0);
     }
 }
 

@@ -38,7 +38,7 @@ fn report(run: Run) -> Value {
 fn the_counts_are_those_of_a_run() {
     let folder = tempfile::tempdir().unwrap();
     let scene = write_scene(folder.path(), STILL);
-    let report = report(Run::partition(&scene, "1,2,3,5").arg("--costs").arg("first"));
+    let report = report(Run::partition(&scene, "1,2,3,5"));
     for division in report["partitions"].as_array().unwrap() {
         let ranks = division["ranks"].as_u64().unwrap() as usize;
         let summary = Results::of(Run::new(&scene).ranks(ranks).threads(1)).summary();
@@ -53,7 +53,7 @@ fn the_counts_are_those_of_a_run() {
 #[test]
 fn the_counts_of_water_that_moves_are_near() {
     let path = scene("dam-break-3d");
-    let report = report(Run::partition(&path, "2,3").arg("--costs").arg("first"));
+    let report = report(Run::partition(&path, "2,3"));
     for division in report["partitions"].as_array().unwrap() {
         let ranks = division["ranks"].as_u64().unwrap() as usize;
         let run = Run::new(&path).ranks(ranks).threads(1).end_time(1e-4);

@@ -65,7 +65,8 @@ impl<const D: usize, P: Partition<D>> Partition<D> for Askew<P> {
     }
 }
 
-fn shear<const D: usize>(x: &[f64; D]) -> [f64; D] {
+/// Where the inner partition sees a point.
+pub(crate) fn shear<const D: usize>(x: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|axis| {
         let (mut sum, mut factor) = (x[axis], NEXT);
         for step in 1..D {

@@ -10,6 +10,7 @@ mod splitters;
 mod weights;
 
 pub use askew::Askew;
+pub(crate) use askew::shear;
 pub use balance::{Imbalance, Rebalance};
 pub use balancer::{Balancer, Evenness, Load, Review};
 pub use hilbert::HilbertCurve;

@@ -21,6 +21,11 @@ pub(super) fn count<const D: usize>(
 ) -> Layout {
     let reach = reach * (1.0 + MARGIN);
     let wholes: Vec<Aabb<D>> = owned.iter().map(|blocks| whole(blocks)).collect();
+    // Whoever has no active particle near needs nothing.
+    let is_active = |block: &&LatticeBlock<D>| classes[usize::from(block.class)].active;
+    let active: Vec<Vec<LatticeBlock<D>>> =
+        owned.iter().map(|blocks| blocks.iter().filter(is_active).copied().collect()).collect();
+    let needing: Vec<Aabb<D>> = active.iter().map(|blocks| whole(blocks)).collect();
     let mut neighbours = vec![Vec::new(); owned.len()];
     for (p, q) in near_ranks(&wholes, reach, &[None; D]) {
         neighbours[p as usize].push(q as usize);
@@ -30,8 +35,8 @@ pub(super) fn count<const D: usize>(
     let mut links = Vec::new();
     for (p, blocks) in owned.iter().enumerate() {
         let mut marked = Marked::new(blocks, reach);
-        for &q in &neighbours[p] {
-            marked.mark(&wholes[p], &owned[q], &wholes[q]);
+        for &q in neighbours[p].iter().filter(|&&q| !needing[q].is_empty()) {
+            marked.mark(&wholes[p], &active[q], &needing[q]);
             let mut sent = 0.0;
             for (class, points) in marked.take_sent(classes.len()) {
                 let class = &classes[class];
@@ -100,7 +105,7 @@ impl<const D: usize> Marked<D> {
         Self { tiles: all, marks, touched: Vec::new(), reach }
     }
 
-    /// Marks the points that a rank with blocks `theirs` needs.
+    /// Marks the points that a rank with active blocks `theirs` needs.
     fn mark(&mut self, mine: &Aabb<D>, theirs: &[LatticeBlock<D>], their_whole: &Aabb<D>) {
         let reach2 = self.reach * self.reach;
         let near = |a: &Aabb<D>, b: &Aabb<D>| a.distance_squared(b, &[None; D]) < reach2;

@@ -13,7 +13,9 @@ pub struct RankLoad {
     pub outer: f64,
     /// Passive particles of this rank.
     pub passive: f64,
-    /// Passive particles of other ranks that this rank needs.
+    /// Passive particles of other ranks that this rank needs: those near its active particles. A run
+    /// that sends them once, before active particles move, sends those near its piece of space, which
+    /// are more.
     pub outer_passive: f64,
     /// Elements of the messages of a pass: one per inner particle and receiver.
     pub sent: f64,

@@ -9,8 +9,10 @@
 //!    [`Rates`] of a core.
 //!
 //! *Active* particles are computed in every pass and exchanged in it. *Passive* ones, such as walls
-//! at rest, are only read, and sent only when lists are rebuilt.
+//! at rest, are only read, and sent only when space is divided anew. The zone is that of the active
+//! particles: a particle is exchanged where it is near active ones of another rank.
 
+mod block_cut;
 mod block_zone;
 mod blocks;
 mod collective;

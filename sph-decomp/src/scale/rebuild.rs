@@ -51,7 +51,8 @@ impl Rebuilds {
         }
         let p = ranks as f64;
         let messages = load.messages_in.max(load.messages_out);
-        // Passive particles travel too; those of a rank are few beside what its node exchanges.
+        // Passive particles need to travel at partitions only; they are few beside what a node
+        // exchanges, and counted here they err on the safe side.
         let elements = traffic.node_in.max(traffic.node_out) + load.outer_passive;
         let bytes = elements * (STATE_BYTES + BLOCK_BYTES / PER_BLOCK);
         let each = net.gathering(BLOCK_BYTES * p, ranks)

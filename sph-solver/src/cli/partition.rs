@@ -26,7 +26,8 @@ pub struct PartitionArguments {
     /// Sample by blocks of the lattice although all particles would fit (beyond 12 million always)
     #[arg(long)]
     sample: bool,
-    /// Weigh as the first partition of a run, or by list lengths as the later ones
+    /// Weigh by list lengths, as a run does from its first step on, or all fluid alike, as before it
+    /// has lists
     #[arg(long, value_enum, default_value = "lists")]
     costs: Costs,
     /// gemini, slingshot, infiniband, or a TOML file with latency, overhead, gap, node_bandwidth and

@@ -1,6 +1,7 @@
 //! The particles of a scene, ready to be divided.
 
 use super::error::StudyError;
+use crate::rank::costs::{FLUID_COST, USUAL_NEIGHBOURS, WALL_COST};
 use crate::scene::{Scene, SceneError};
 use crate::setup::{
     BYTES_PER_POSITION, BlockKind, Geometry, Occupancy, Positions, Sample, lattice_neighbours,
@@ -9,11 +10,6 @@ use crate::setup::{
 use sph_decomp::ZoneOptions;
 use sph_decomp::scale::{BlockClass, LatticeBlock, Layout, Point};
 
-/// Cost of a wall particle and of a fluid particle besides its neighbours, in pairs: what the rebuild
-/// of a run uses.
-const WALL_COST: f32 = 4.0;
-const FLUID_COST: f32 = 20.0;
-
 /// More fluid particles than this are sampled by blocks.
 const MOST_PARTICLES: f64 = 1.2e7;
 
@@ -21,10 +17,23 @@ const MOST_PARTICLES: f64 = 1.2e7;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Costs {
-    /// As the first partition of a run, before there are lists: all fluid particles weigh the same.
+    /// Before there are lists: all fluid particles weigh the same. A run divides so first, and goes on
+    /// so when its ranks then turn out to be even.
     First,
-    /// As the later ones: by the lengths of the lists, here those of the start.
+    /// By the lengths of the lists, here those of the start: as a run divides again at once, before its
+    /// first step, unless its ranks are even already.
     Lists,
+}
+
+impl Costs {
+    /// Cost of a fluid particle with so many neighbours, as in the rebuild of a run.
+    fn of_fluid(self, neighbours: f64) -> f64 {
+        FLUID_COST
+            + match self {
+                Self::First => USUAL_NEIGHBOURS as f64,
+                Self::Lists => neighbours,
+            }
+    }
 }
 
 /// The particles of a scene, or blocks that stand for them.
@@ -106,13 +115,9 @@ impl<const D: usize> Field<D> {
             if i < fluid {
                 // A particle is not in its own list.
                 let pairs = (near.saturating_sub(1) + near_walls[i]) as f32;
-                let cost = match costs {
-                    Costs::First => FLUID_COST,
-                    Costs::Lists => FLUID_COST + pairs,
-                };
-                Point { active: true, cost, pairs }
+                Point { active: true, cost: costs.of_fluid(pairs.into()) as f32, pairs }
             } else {
-                Point { active: false, cost: WALL_COST, pairs: *near as f32 }
+                Point { active: false, cost: WALL_COST as f32, pairs: *near as f32 }
             }
         };
         let points: Vec<Point> = near_fluid.iter().enumerate().map(point).collect();
@@ -128,11 +133,11 @@ impl<const D: usize> Field<D> {
         let layers = (*scene.numerics.support - 0.5 - 1e-6).ceil().max(1.0) as i64;
         let seen = (1..=layers).map(|layer| lattice_neighbours_beyond::<D>(radius, layer) as f64);
         let seen = seen.sum::<f64>() / layers as f64;
-        let cost = f64::from(FLUID_COST) + if costs == Costs::Lists { pairs } else { 0.0 };
+        let cost = costs.of_fluid(pairs);
         let wall = BlockClass {
             active: false,
             density: sample.wall_density,
-            cost: f64::from(WALL_COST),
+            cost: WALL_COST,
             pairs: seen,
         };
         let classes = vec![

@@ -15,7 +15,7 @@ impl fmt::Display for PartitionReport {
         let spacing = format!("spacing {:.4e} m", self.spacing);
         writeln!(f, "{:<12} {fluid} fluid, {walls} wall, {spacing}{how}", "particles")?;
         let weighed = match self.costs {
-            Costs::First => "as the first partition of a run",
+            Costs::First => "all fluid alike, as before there are lists",
             Costs::Lists => "by list lengths",
         };
         writeln!(f, "{:<12} {weighed}", "weighed")?;

@@ -1,5 +1,6 @@
 //! The particles of one rank in the layout that the passes work on.
 
+pub(crate) mod costs;
 mod rebuild;
 mod solids;
 mod traveller;

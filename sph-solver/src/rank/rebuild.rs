@@ -1,6 +1,7 @@
 //! The rebuild: who owns what, who needs what, in which order, and who is near whom.
 
 use super::Rank;
+use super::costs::{FLUID_COST, USUAL_NEIGHBOURS, WALL_COST};
 use super::traveller::{Traveller, arrive, depart, place};
 use crate::error::RunError;
 use crate::model::Model;
@@ -27,14 +28,6 @@ const LOOSE: f64 = 0.95;
 /// Consecutive targets of a cluster are not farther apart than this many reaches. Coordinates of
 /// records wrap around after 256 support radii: what is far must not seem near.
 const JUMP: f64 = 8.0;
-
-/// Cost of a wall particle, in pairs: no sweep visits it as a target. It is stored, sorted and
-/// sent at rebuilds, so that a rank is not left with all the walls of a dry half for nothing.
-const WALL_COST: f64 = 0.5;
-/// Cost of a fluid particle besides its neighbours, in pairs.
-const FLUID_COST: f64 = 20.0;
-/// Neighbours of a fluid particle before there are lists.
-const USUAL_NEIGHBOURS: usize = 90;
 
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Brings the particles to their owners, finds the overlap zone, sorts, and builds the lists.

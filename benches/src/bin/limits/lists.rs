@@ -74,14 +74,14 @@ fn of_clusters(count: usize, reach: f64, effort: Effort) -> Result<ListRow, Box<
 }
 
 /// Time of cells and of lists, on one thread and on two.
-type Rounds = Vec<((Spent, Spent), (Spent, Spent))>;
+type Round = ((Spent, Spent), (Spent, Spent));
 
 fn spent(
     lattice: &Lattice,
     grid: &Grid<3>,
     effort: Effort,
     mut build: impl FnMut(&CellList<3>) + Send,
-) -> Result<Rounds, Box<dyn Error>> {
+) -> Result<Vec<Round>, Box<dyn Error>> {
     let mut cells = CellList::build(grid, &lattice.positions, &lattice.ids);
     let mut once = |team: &Team| -> (Spent, Spent) {
         team.install(|| {
@@ -103,7 +103,7 @@ fn row(
     pairs: u64,
     tests: u64,
     bytes: usize,
-    rounds: &Rounds,
+    rounds: &[Round],
 ) -> ListRow {
     let n = lattice.len() as f64;
     let middle = |of: &dyn Fn((Spent, Spent), (Spent, Spent)) -> f64| {

@@ -40,7 +40,7 @@ pub fn compare() -> Outcome<()> {
         let core = (after - between) - (between - before);
         let (rates, seconds, core_of_one) =
             *one.get_or_insert((rates(&summary), loop_seconds(&summary), core));
-        let layout = Field::<3>::read(&scene, Costs::First, false)?.layout(ranks)?;
+        let layout = Field::<3>::read(&scene, Costs::Lists, false)?.layout(ranks)?;
         let work = work(&layout, &rates);
         let slowest = Prediction::of(&layout, &rates, &MEMORY, Variant::BEST).step;
         let alone = Prediction::of(&layout, &rates, &MEMORY, Variant::BEST).one_rank;

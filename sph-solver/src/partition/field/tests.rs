@@ -78,7 +78,8 @@ fn a_number_of_particles_has_a_spacing() {
     let field = field.as_mut().unwrap();
     assert!((field.fluid / 1e8 - 1.0).abs() < 0.02, "{}", field.fluid);
     let layout = field.layout(512).unwrap();
-    assert!(layout.imbalance(|rank| rank.cost).ratio() < 1.1);
+    // 200 000 particles per rank: straight cuts between layers would leave some per cent.
+    assert!(layout.imbalance(|rank| rank.cost).ratio() < 1.001);
 }
 
 #[test]

@@ -1,0 +1,9 @@
+//! What particles cost in a step, in pairs: the weights of a partition.
+
+/// Cost of a wall particle: no sweep visits it as a target. It is stored, sorted and sent when space
+/// is divided, so that a rank is not left with all the walls of a dry half for nothing.
+pub(crate) const WALL_COST: f64 = 0.5;
+/// Cost of a fluid particle besides its neighbours.
+pub(crate) const FLUID_COST: f64 = 20.0;
+/// Neighbours of a fluid particle before there are lists.
+pub(crate) const USUAL_NEIGHBOURS: usize = 90;
