@@ -141,17 +141,22 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         Ok(outer)
     }
 
-    /// Order of the owned fluid: local before inner, then such that clusters are compact, then by id.
+    /// Order of the owned fluid: local before inner, then such that clusters are compact. Sums follow
+    /// the order of the lists, so this one may depend on how particles came here.
     fn sort_owned(&mut self, model: &Model<D>, plan: &mut HaloPlan) -> Result<(), RunError> {
         let columns = ColumnOrder::new(model.domain.0, model.spacing)?;
-        let state = &self.state;
-        let inner = plan.is_inner(state.len());
-        let mut keys: Vec<(bool, u64, u64, u32)> = (0..state.len())
-            .map(|i| (inner[i], columns.key(&state.position[i]), state.id[i], i as u32))
+        let position = &self.state.position;
+        let is_inner = plan.is_inner(position.len());
+        // One number to compare: class, place in the columns, and who it is.
+        let mut keys: Vec<u128> = (0..position.len())
+            .map(|i| {
+                let place = u128::from(columns.key(&position[i])) << 32;
+                u128::from(is_inner[i]) << 96 | place | i as u128
+            })
             .collect();
         keys.sort_unstable();
-        let order: Vec<u32> = keys.iter().map(|key| key.3).collect();
-        let inner = keys.iter().filter(|key| key.0).count();
+        let order: Vec<u32> = keys.iter().map(|&key| key as u32).collect();
+        let inner = is_inner.iter().filter(|&&inner| inner).count();
         self.fluid = Parts { local: keys.len() - inner, inner, outer: 0 };
         plan.renumber_owned(&order);
         self.state.keep(&order);
