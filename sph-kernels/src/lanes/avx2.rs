@@ -58,7 +58,7 @@ pub struct F32x8(__m256);
 /// Four `f64`.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub struct F64x4(__m256d);
+pub struct F64x4(pub(super) __m256d);
 
 /// Calls intrinsics that touch no memory.
 macro_rules! cpu {

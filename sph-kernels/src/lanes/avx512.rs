@@ -6,7 +6,7 @@
 //! CPU was found to have AVX-512 F, DQ and VL besides AVX2 and FMA. All `unsafe` of the intrinsics rests
 //! on that.
 
-use super::avx2::F32x8;
+use super::avx2::{Avx2, F32x8, F64x4};
 use super::{Lanes, Vectorized, head, head_mut, out_of_range};
 use core::arch::x86_64::*;
 use core::fmt;
@@ -23,18 +23,14 @@ impl Avx512 {
         #[cfg(feature = "std")]
         let found = std::is_x86_feature_detected!("avx512f")
             && std::is_x86_feature_detected!("avx512dq")
-            && std::is_x86_feature_detected!("avx512vl")
-            && std::is_x86_feature_detected!("avx2")
-            && std::is_x86_feature_detected!("fma");
+            && std::is_x86_feature_detected!("avx512vl");
         #[cfg(not(feature = "std"))]
         let found = cfg!(all(
             target_feature = "avx512f",
             target_feature = "avx512dq",
-            target_feature = "avx512vl",
-            target_feature = "avx2",
-            target_feature = "fma"
+            target_feature = "avx512vl"
         ));
-        found.then_some(Self(()))
+        (found && Avx2::detect().is_some()).then_some(Self(()))
     }
 
     /// Runs `op` on eight `f32`.
@@ -172,13 +168,11 @@ impl Lanes for F64x8 {
 
     #[inline(always)]
     fn sum(self) -> f64 {
-        cpu!({
-            let half =
-                _mm256_add_pd(_mm512_castpd512_pd256(self.0), _mm512_extractf64x4_pd::<1>(self.0));
-            let quarter =
-                _mm_add_pd(_mm256_castpd256_pd128(half), _mm256_extractf128_pd::<1>(half));
-            _mm_cvtsd_f64(_mm_add_sd(quarter, _mm_unpackhi_pd(quarter, quarter)))
-        })
+        let half = cpu!(_mm256_add_pd(
+            _mm512_castpd512_pd256(self.0),
+            _mm512_extractf64x4_pd::<1>(self.0)
+        ));
+        F64x4(half).sum()
     }
 
     #[inline(always)]

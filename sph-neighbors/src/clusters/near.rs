@@ -146,44 +146,22 @@ impl<const D: usize> Search<'_, D> {
     #[inline(always)]
     fn rows(&self, image: &Group<D>, near: &mut Near) -> usize {
         near.rows.clear();
-        let Some((first, last)) = self.cells.bounds() else {
-            return 0;
-        };
-        let Group { low, high, .. } = image;
-        let bits = self.cells.grid().bits();
-        let whole = self.query.reach.ceil() as i64;
         let reach2 = self.query.reach * self.query.reach;
-        let from: [i64; D] = from_fn(|a| first[a].max((low[a] - whole) >> bits));
-        let to: [i64; D] = from_fn(|a| last[a].min((high[a] + whole) >> bits));
-        if (0..D).any(|axis| from[axis] > to[axis]) {
-            return 0;
-        }
         let mut sources = 0;
-        let mut row = from;
-        loop {
-            // What is left of the reach along the row.
-            let mut along2 = reach2;
-            for axis in 1..D {
-                let near = row[axis] << bits;
-                let far = near + (1 << bits) - 1;
-                let gap = (low[axis] - far).max(near - high[axis]).max(0) as f64;
-                along2 -= gap * gap;
-            }
-            if along2 >= 0.0 {
-                let along = along2.sqrt() as i64 + 1;
-                row[0] = (low[0] - along) >> bits;
-                let row = self.cells.row(row, (high[0] + along) >> bits);
-                if !row.is_empty() {
-                    sources += row.len();
-                    near.rows.push(row.start as u32..row.end as u32);
+        image.for_each_row_across(
+            self.cells,
+            self.query.reach,
+            #[inline(always)]
+            |row, across| {
+                let part = image.part_of_row(self.cells, row, reach2 - across);
+                let places = self.cells.places(part);
+                if !places.is_empty() {
+                    sources += places.len();
+                    near.rows.push(places.start as u32..places.end as u32);
                 }
-            }
-            let Some(axis) = (1..D).find(|&axis| row[axis] < to[axis]) else {
-                return sources;
-            };
-            row[axis] += 1;
-            row[1..axis].copy_from_slice(&from[1..axis]);
-        }
+            },
+        );
+        sources
     }
 }
 

@@ -129,16 +129,15 @@ impl<const D: usize> Group<D> {
         }
     }
 
-    /// Calls `visit` with the places of the particles in each row of cells that may be within reach
-    /// of the group, in canonical order.
-    ///
-    /// `closer` may shorten the reach for a part of a row, given the numbers of its cells.
-    pub fn for_each_row(
+    /// Calls `visit` with every row of cells that may be within reach of the group, in canonical
+    /// order: with a cell of the row, whose place along it means nothing, and the square of the
+    /// distance of the row from the box of the targets, across the row.
+    #[inline(always)]
+    pub fn for_each_row_across(
         &self,
         cells: &CellList<D>,
         reach: f64,
-        closer: impl Fn(Range<usize>) -> Option<f64>,
-        mut visit: impl FnMut(Range<usize>),
+        mut visit: impl FnMut([i64; D], f64),
     ) {
         let Some((first, last)) = cells.bounds() else {
             return;
@@ -153,7 +152,6 @@ impl<const D: usize> Group<D> {
         }
         let mut row = from;
         loop {
-            // Distance of the row from the box of the targets, across the row.
             let mut across = 0.0;
             for axis in 1..D {
                 let near = row[axis] << bits;
@@ -161,15 +159,28 @@ impl<const D: usize> Group<D> {
                 let gap = (low[axis] - far).max(near - high[axis]).max(0) as f64;
                 across += gap * gap;
             }
-            let mut part = |reach: f64| {
-                let along = reach * reach - across;
-                if along < 0.0 {
-                    return 0..0;
-                }
-                let along = along.sqrt() as i64 + 1;
-                row[0] = (low[0] - along) >> bits;
-                cells.row_of_cells(row, (high[0] + along) >> bits)
+            visit(row, across);
+            let Some(axis) = (1..D).find(|&axis| row[axis] < to[axis]) else {
+                return;
             };
+            row[axis] += 1;
+            row[1..axis].copy_from_slice(&from[1..axis]);
+        }
+    }
+
+    /// Calls `visit` with the places of the particles in each row of cells that may be within reach
+    /// of the group, in canonical order.
+    ///
+    /// `closer` may shorten the reach for a part of a row, given the numbers of its cells.
+    pub fn for_each_row(
+        &self,
+        cells: &CellList<D>,
+        reach: f64,
+        closer: impl Fn(Range<usize>) -> Option<f64>,
+        mut visit: impl FnMut(Range<usize>),
+    ) {
+        self.for_each_row_across(cells, reach, |row, across| {
+            let part = |reach: f64| self.part_of_row(cells, row, reach * reach - across);
             let (mut reach, mut cells_in_reach) = (reach, part(reach));
             // A shorter part may allow a still shorter reach.
             for _ in 0..2 {
@@ -183,11 +194,19 @@ impl<const D: usize> Group<D> {
             if !places.is_empty() {
                 visit(places);
             }
-            let Some(axis) = (1..D).find(|&axis| row[axis] < to[axis]) else {
-                return;
-            };
-            row[axis] += 1;
-            row[1..axis].copy_from_slice(&from[1..axis]);
+        });
+    }
+
+    /// Numbers of the cells of a row within reach of the group, of whose square this much is left
+    /// along the row.
+    #[inline(always)]
+    pub fn part_of_row(&self, cells: &CellList<D>, mut row: [i64; D], along: f64) -> Range<usize> {
+        if along < 0.0 {
+            return 0..0;
         }
+        let bits = cells.grid().bits();
+        let along = along.sqrt() as i64 + 1;
+        row[0] = (self.low[0] - along) >> bits;
+        cells.row_of_cells(row, (self.high[0] + along) >> bits)
     }
 }

@@ -2,12 +2,13 @@
 
 use super::report::{Division, PartitionReport};
 use crate::partition::Costs;
+use crate::setup::grouped;
 use std::fmt;
 
 impl fmt::Display for PartitionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{:<12} {} ({} dimensions)", "scene", self.name, self.dimension)?;
-        let (fluid, walls) = (count(self.fluid as f64), count(self.walls as f64));
+        let (fluid, walls) = (grouped(self.fluid as f64), grouped(self.walls as f64));
         let how = match self.sampled_by_blocks_of {
             Some(side) => format!(", sampled by blocks of {side}^{}", self.dimension),
             None => String::new(),
@@ -64,7 +65,7 @@ impl fmt::Display for PartitionReport {
 
 impl Division {
     fn counts(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let pair = |mean: f64, max: f64| format!("{} ({})", count(mean), count(max));
+        let pair = |mean: f64, max: f64| format!("{} ({})", grouped(mean), grouped(max));
         let [density, force] = [self.density_pass_bytes, self.force_pass_bytes];
         writeln!(
             f,
@@ -97,28 +98,5 @@ impl Division {
             percent(self.overlapped_repeating_walls.efficiency),
             percent(self.blocking_repeating_walls.efficiency),
         )
-    }
-}
-
-/// A count with thin groups of three digits.
-fn count(number: f64) -> String {
-    let digits = format!("{number:.0}");
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index) % 3 == 0 {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::count;
-
-    #[test]
-    fn counts_are_grouped() {
-        assert_eq!([0.4, 999.6, 1e9].map(count), ["0", "1 000", "1 000 000 000"]);
     }
 }

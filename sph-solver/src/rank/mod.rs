@@ -7,7 +7,7 @@ mod traveller;
 
 use crate::block::FluidColumns;
 use crate::passes::{DENSEST, Surroundings};
-use crate::records::Record;
+use crate::records::{Encoder, Record, record};
 use crate::state::State;
 use crate::terms::Acceleration;
 use bytemuck::Pod;
@@ -55,6 +55,18 @@ pub struct Rank<const D: usize, S: Real> {
     density_halo: Halo<[S; 3]>,
     force_halo: Halo<[S; 6]>,
     partition: Option<Askew<Orb<D>>>,
+}
+
+/// The record of particle `i`, with its density deviation.
+fn record_of<const D: usize, S: Real>(
+    encoder: &Encoder,
+    density0: f64,
+    state: &State<D>,
+    i: usize,
+) -> Record<S> {
+    let weight = encoder.weight(state.mass[i] / state.density[i]);
+    let deviation = S::from_f64(state.density[i] - density0);
+    record(encoder.motion(&state.position[i], &state.velocity[i]), deviation, weight)
 }
 
 /// What a pass needs of a rank, borrowed apart.

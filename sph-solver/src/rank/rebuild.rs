@@ -1,11 +1,11 @@
 //! The rebuild: who owns what, who needs what, in which order, and who is near whom.
 
-use super::Rank;
 use super::costs::{FLUID_COST, USUAL_NEIGHBOURS, WALL_COST};
 use super::traveller::{Traveller, arrive, depart, place};
+use super::{Rank, record_of};
 use crate::error::RunError;
 use crate::model::Model;
-use crate::records::{Encoder, record};
+use crate::records::Encoder;
 use crate::spray::mark_spray;
 use crate::state::State;
 use crate::team::Team;
@@ -166,11 +166,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Writes the records of the fluid: owned particles, then outer ones.
     fn lay_out(&mut self, model: &Model<D>, encoder: &Encoder, outer: &State<D>) {
         let density0 = model.equation_of_state.density0();
-        let write = |state: &State<D>, i: usize| {
-            let weight = encoder.weight(state.mass[i] / state.density[i]);
-            let deviation = S::from_f64(state.density[i] - density0);
-            record(encoder.motion(&state.position[i], &state.velocity[i]), deviation, weight)
-        };
+        let write = |state: &State<D>, i: usize| record_of(encoder, density0, state, i);
         let owned = self.state.len();
         self.deviation.clear();
         self.deviation.extend((0..owned).map(|i| write(&self.state, i)));

@@ -1,10 +1,10 @@
 //! Solids at rest: sorted, exchanged and searchable once for as long as the partition lasts.
 
-use super::Rank;
 use super::traveller::{Traveller, arrive, depart};
+use super::{Rank, record_of};
 use crate::error::RunError;
 use crate::model::Model;
-use crate::records::{Encoder, record};
+use crate::records::Encoder;
 use crate::state::State;
 use bytemuck::Pod;
 use sph_decomp::{CommError, Communicator, Parts};
@@ -26,17 +26,13 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         let mut all = self.solids.clone();
         others.iter().for_each(|solid| arrive(solid, &mut all));
         self.solid.outer = others.len();
-        let cells = CellList::build(grid, &all.position, &all.id);
+        let mut cells = CellList::build(grid, &all.position, &all.id);
+        // Neighbours in space shall be neighbours in memory.
         all.keep(cells.order());
+        cells.rebuild(grid, &all.position, &all.id);
+        self.wall_cells = Some(cells);
         let density0 = model.equation_of_state.density0();
-        let write = |i: usize| {
-            let weight = encoder.weight(all.mass[i] / all.density[i]);
-            let deviation = S::from_f64(all.density[i] - density0);
-            record(encoder.motion(&all.position[i], &all.velocity[i]), deviation, weight)
-        };
-        self.walls = (0..all.len()).map(write).collect();
-        // Built anew, so that neighbours in space are neighbours in memory.
-        self.wall_cells = Some(CellList::build(grid, &all.position, &all.id));
+        self.walls = (0..all.len()).map(|i| record_of(encoder, density0, &all, i)).collect();
         Ok(())
     }
 

@@ -24,6 +24,7 @@ pub use geometry::Geometry;
 pub use neighbours::{Occupancy, lattice_neighbours, lattice_neighbours_beyond};
 pub use particles::Particles;
 pub use positions::{BYTES_PER_POSITION, Positions};
+pub(crate) use report::grouped;
 pub use report::{
     BYTES_PER_FLUID_PARTICLE, BYTES_PER_WALL_PARTICLE, CheckReport, MeshSummary,
     PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SolidCount,

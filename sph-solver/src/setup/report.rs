@@ -187,7 +187,7 @@ fn corners(corners: &[Vec<f64>; 2]) -> String {
 }
 
 /// A whole number with thin groups of three digits.
-fn grouped(number: f64) -> String {
+pub(crate) fn grouped(number: f64) -> String {
     let digits = format!("{number:.0}");
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {
@@ -237,6 +237,7 @@ mod tests {
         }
         assert_eq!(grouped(1_234_567.0), "1 234 567");
         assert_eq!(grouped(12.0), "12");
+        assert_eq!([0.4, 999.6, 1e9].map(grouped), ["0", "1 000", "1 000 000 000"]);
         assert_eq!(scaled(2.5e9), "2.500 G");
         assert_eq!(duration(90.0), "90 seconds");
         assert_eq!(duration(7200.0 * 3.0), "6.0 hours");
