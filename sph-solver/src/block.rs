@@ -1,6 +1,7 @@
 //! A block: the state of consecutive particles, borrowed apart so that blocks advance in parallel.
 
 use crate::records::Record;
+use sph_neighbors::Clusters;
 
 /// Columns of the owned fluid particles that a pass may change.
 #[derive(Debug)]
@@ -81,6 +82,15 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
         )
     }
 
+    /// The smallest number of particles, at least `size`, after which a cluster begins or the block
+    /// ends: cutting there computes no cluster twice.
+    pub fn cut(&self, size: usize, clusters: &Clusters) -> usize {
+        if size >= self.len() {
+            return self.len();
+        }
+        (clusters.next_start(self.first + size) - self.first).min(self.len())
+    }
+
     /// The same block for a shorter time.
     pub fn reborrow(&mut self) -> Block<'_, D, S, R> {
         Block {
@@ -95,12 +105,16 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
         }
     }
 
-    /// Pieces of `size` particles, the last one shorter.
-    pub fn pieces(&mut self, size: usize) -> impl Iterator<Item = Block<'_, D, S, R>> {
+    /// Pieces of `size` particles, each filled up to a whole cluster; the last one may be shorter.
+    pub fn pieces<'b>(
+        &'b mut self,
+        size: usize,
+        clusters: &'b Clusters,
+    ) -> impl Iterator<Item = Block<'b, D, S, R>> {
         let mut rest = Some(self.reborrow());
         std::iter::from_fn(move || {
             let block = rest.take().filter(|block| !block.is_empty())?;
-            let size = size.min(block.len());
+            let size = block.cut(size, clusters);
             let (piece, tail) = block.split_at(size);
             rest = Some(tail);
             Some(piece)
@@ -128,11 +142,13 @@ mod tests {
             new: &mut new,
         };
         let mut sizes = Vec::new();
-        for piece in block.pieces(4) {
+        // Clusters begin at 0, 5 and 13.
+        let clusters = Clusters::new(15, &[5]);
+        for piece in block.pieces(4, &clusters) {
             piece.density.iter_mut().for_each(|d| *d += 1.0);
             sizes.push((piece.first, piece.len()));
         }
-        assert_eq!(sizes, [(5, 4), (9, 4), (13, 2)]);
+        assert_eq!(sizes, [(5, 8), (13, 2)]);
         assert_eq!(d, vec![1.0; n]);
     }
 }

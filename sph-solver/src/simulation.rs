@@ -2,19 +2,22 @@
 
 use crate::error::RunError;
 use crate::lio::{Copies, Exchange, Extremes, lio_pass};
+use crate::loads::{LoadScale, Loads};
 use crate::model::{Model, OnLost};
 use crate::passes::{DensityPass, ForcePass, kicked};
-use crate::physics::Physics;
 use crate::rank::Rank;
+use crate::records::Encoder;
+use crate::scheme::Scheme;
+use crate::space::PairScale;
 use crate::state::State;
 use crate::team::Team;
 use crate::terms::Acceleration;
 use crate::timestep::Skin;
 use crate::timings::{Phase, Timings};
+use crate::walls::WallElements;
 use bytemuck::Pod;
 use sph_decomp::{Balancer, Collectives, Communicator, Evenness, Exposed, Load, Metered};
-use sph_kernels::{Kernel, Real};
-use std::marker::PhantomData;
+use sph_kernels::Real;
 
 /// Where a run is between two steps, and what the next step needs besides the particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,11 +78,12 @@ pub struct Counters {
 }
 
 /// One rank of a run.
-pub struct Simulation<'a, const D: usize, S: Real, K, P> {
+pub struct Simulation<'a, const D: usize, S: Real> {
     comm: Metered<&'a dyn Communicator>,
     team: Team,
     model: Model<D>,
-    physics: P,
+    scheme: Scheme<D, S>,
+    scale: PairScale<D>,
     rank: Rank<D, S>,
     clock: Clock,
     skin: Skin,
@@ -95,23 +99,22 @@ pub struct Simulation<'a, const D: usize, S: Real, K, P> {
     /// Steps and exposed communication at the last rebuild.
     at_rebuild: (u64, Exposed),
     timings: Timings,
-    kernel: PhantomData<K>,
+    /// How loads are counted, if somebody asks for them.
+    load_scale: Option<LoadScale>,
+    /// Loads of this rank's fluid in the last step.
+    loads: Loads,
 }
 
-impl<'a, const D: usize, S, K, P> Simulation<'a, D, S, K, P>
-where
-    S: Real + Pod,
-    K: Kernel,
-    P: Physics<D>,
-{
-    /// Starts from the particles in `state`, which may lie on any rank. `clock` is that of a
-    /// checkpoint, or `None` for a new run.
+impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
+    /// Starts from the particles in `state` and the walls in `elements`, which may lie on any rank.
+    /// `clock` is that of a checkpoint, or `None` for a new run.
     pub fn new(
         comm: &'a dyn Communicator,
         team: Team,
         model: Model<D>,
-        physics: P,
+        scheme: Scheme<D, S>,
         state: State<D>,
+        elements: WallElements<D>,
         clock: Option<Clock>,
     ) -> Result<Self, RunError> {
         let start = at_start(comm, &model, &state)?;
@@ -126,8 +129,12 @@ where
         Ok(Self {
             comm: Metered::new(comm),
             team,
-            physics,
-            rank: Rank::new(state),
+            scale: model.scale(),
+            rank: Rank::new(
+                state,
+                if scheme.has_walls() { elements } else { WallElements::default() },
+            ),
+            scheme,
             clock,
             skin,
             pending: clock.extremes,
@@ -140,8 +147,9 @@ where
             by_prediction: false,
             at_rebuild: (0, Exposed::default()),
             timings: Timings::default(),
+            load_scale: None,
+            loads: Loads::NONE,
             model,
-            kernel: PhantomData,
         })
     }
 
@@ -160,10 +168,10 @@ where
         Ok(Clock { extremes, ..self.clock })
     }
 
-    /// A copy of the state of the particles of this rank between two steps, fluid first: positions of the present time,
-    /// velocities half a step behind it, densities of the time before.
+    /// A copy of the state of the particles of this rank between two steps: positions of the present
+    /// time, velocities half a step behind it, densities of the time before.
     pub fn state(&self) -> State<D> {
-        self.rank.whole_state()
+        self.rank.state.clone()
     }
 
     /// Time of the present positions, s: the next step ends there.
@@ -238,6 +246,22 @@ where
         &self.rank
     }
 
+    /// From now on counts the loads on solids, with quanta of this size.
+    pub fn count_loads(&mut self, scale: LoadScale) {
+        self.load_scale = Some(scale);
+    }
+
+    /// Loads of the fluid of this rank on solids in the last step; nothing without
+    /// [`count_loads`](Self::count_loads).
+    pub fn loads(&self) -> &Loads {
+        &self.loads
+    }
+
+    /// What is summed over which neighbours.
+    pub fn scheme(&self) -> &Scheme<D, S> {
+        &self.scheme
+    }
+
     /// Number of threads of this rank.
     pub fn threads(&self) -> usize {
         self.team.threads()
@@ -260,7 +284,7 @@ where
         self.counters.steps += 1;
         let fluid = self.rank.fluid.owned();
         self.counters.particle_updates += fluid as u64;
-        self.counters.pairs += 2 * (self.rank.near_fluid.pairs() + self.rank.near_walls.pairs());
+        self.counters.pairs += 2 * self.rank.pairs();
         self.clock.step += 1;
         self.clock.time += dt;
         self.clock.dt = dt;
@@ -298,9 +322,9 @@ where
     fn renew_rank(&mut self) -> Result<Vec<(u64, [f64; D])>, RunError> {
         let review = self.balancer.review(&self.comm, self.load())?;
         let division = review.divide.then_some(review.rate);
-        let encoder = self.model.encoder::<K>();
+        let encoder = self.encoder();
         let (comm, team, model) = (&self.comm, &self.team, &self.model);
-        let gone = self.rank.rebuild(comm, team, model, &encoder, P::has_walls(), division)?;
+        let gone = self.rank.rebuild(comm, team, model, &encoder, division)?;
         self.at_rebuild = (self.counters.steps, self.exposed);
         Ok(gone)
     }
@@ -321,17 +345,21 @@ where
         }
     }
 
+    fn encoder(&self) -> Encoder<D, S> {
+        Encoder::new(&self.scale, &self.scheme.kernel)
+    }
+
     fn density_pass(&mut self) -> Result<Extremes, RunError> {
         let _timer = self.timings.measure(Phase::Density);
-        let rank = &mut self.rank;
-        let (fluid, wall) = self.physics.density();
+        let encoder = self.encoder();
         let mut maxima = self.pending.to_array();
-        let view = rank.passing();
-        let pass = DensityPass::<D, S, _, _, K> {
-            around: view.surroundings(fluid, wall),
+        let view = self.rank.passing();
+        let pass = DensityPass {
+            around: view.surroundings(&self.scale),
+            scheme: &self.scheme,
+            encoder,
             model: &self.model,
             dt: self.clock.dt,
-            kernel: PhantomData,
         };
         let exchange = Exchange {
             comm: &self.comm,
@@ -349,21 +377,22 @@ where
             view.density_rate,
         )?;
         self.exposed += exposed;
-        self.pending = Extremes { fault: own.fault, ..Extremes::NONE };
+        self.pending = Extremes { fault: own.extremes.fault, ..Extremes::NONE };
         Ok(Extremes::from_array(maxima))
     }
 
     fn force_pass(&mut self, dt_before: f64, dt: f64) -> Result<(), RunError> {
         let _timer = self.timings.measure(Phase::Force);
-        let rank = &mut self.rank;
-        let (fluid, wall) = self.physics.force();
-        let view = rank.passing();
-        let pass = ForcePass::<D, S, _, _, K> {
-            around: view.surroundings(fluid, wall),
+        let encoder = self.encoder();
+        let view = self.rank.passing();
+        let pass = ForcePass {
+            around: view.surroundings(&self.scale),
+            scheme: &self.scheme,
+            encoder,
             model: &self.model,
+            loads: self.load_scale,
             dt_before,
             dt,
-            kernel: PhantomData,
         };
         let exchange =
             Exchange { comm: &self.comm, halo: view.force_halo, plan: view.plan, maxima: &mut [] };
@@ -377,7 +406,8 @@ where
             view.acceleration,
         )?;
         self.exposed += exposed;
-        self.pending = self.pending.max(own);
+        self.pending = self.pending.max(own.extremes);
+        self.loads = own.loads;
         Ok(())
     }
 

@@ -9,21 +9,27 @@
 //! rebuild costs no pair loop.
 
 use crate::model::Model;
+use crate::walls::WallSet;
 use sph_neighbors::ClusterList;
 use std::f64::consts::PI;
 
 /// A flat surface fills one half, a right-angled edge of fluid one quarter.
 const FILLED: f64 = 0.3;
 
-/// Marks the spray among the targets of the two lists.
-pub fn mark_spray<const D: usize>(
+/// Marks the spray among the targets of the lists of fluid and walls.
+pub fn mark_spray<const D: usize, S>(
     model: &Model<D>,
     near_fluid: &ClusterList,
-    near_walls: &ClusterList,
+    walls: &[WallSet<D, S>],
 ) -> Vec<bool> {
     let ball = if D == 2 { PI } else { 4.0 / 3.0 * PI };
     let places = ball * (model.reach() / model.spacing).powi(D as i32);
-    let walls = near_walls.counts().chain(std::iter::repeat(0));
-    let filled = |(fluid, walls)| (fluid as f64) < FILLED * (places - walls as f64);
-    near_fluid.counts().zip(walls).map(filled).collect()
+    let mut filled: Vec<f64> = near_fluid.counts().map(|fluid| fluid as f64).collect();
+    // What walls take away of the space around counts as filled in proportion.
+    for wall in walls {
+        for (filled, elements) in filled.iter_mut().zip(wall.near.counts()) {
+            *filled += FILLED * elements as f64;
+        }
+    }
+    filled.iter().map(|filled| *filled < FILLED * places).collect()
 }

@@ -1,87 +1,82 @@
 //! The sweep: sums pair terms over the neighbours of every target, one target a lane.
 //!
-//! One function, [`sweep`], compiled for a dimension, a kernel, a scalar and a tuple of terms. The
-//! targets of a cluster lie in the lanes; each source near the cluster is read once, as one record
-//! that is broadcast to all lanes, and adds to every target. Sources beyond the support of a target
-//! add zero to it, because the kernel's slope is zero there. So each target adds its neighbours one
-//! after the other in canonical order, and its sums depend neither on threads, nor on ranks, nor on
-//! the width of the lanes, nor on who shares its cluster.
+//! One function, [`sweep`], compiled for a dimension, a kernel, a scalar and the terms of one group
+//! of pairs. The targets of a cluster lie in the lanes; each source near the cluster is read once,
+//! as one record that is broadcast to all lanes, and adds to every target. Sources beyond the
+//! support of a target add zero to it, because the kernel's slope is zero there. So each target adds
+//! its neighbours one after the other in canonical order, and its sums depend neither on threads,
+//! nor on ranks, nor on the width of the lanes, nor on who shares its cluster.
 
 use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
-use crate::terms::{Pair, PairTerm, Quantity, Source, Target, dot, lanes};
+use crate::space::{Metric, PairScale};
+use crate::terms::{Pair, PairTerm, Quantity, Source, Target, WallPair, WallTerm, dot, lanes};
 use sph_kernels::{Kernel, Lanes, Real, Vectorized};
-use sph_neighbors::{CLUSTER, ClusterList, Clusters};
+use sph_neighbors::{CLUSTER, ClusterList};
 use std::array::from_fn;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Kernel and scale of the pairs.
-#[derive(Debug, Clone, Copy)]
-pub struct PairScale {
-    /// Metres per unit of coordinate differences.
-    pub unit: f64,
-    /// Support radius R, m.
-    pub support_radius: f64,
-}
+/// A group of pairs: who the sources of every target are and what a pair contributes.
+pub trait Pairs<const D: usize, Q: Quantity, S: Real>: Copy + Sync {
+    /// The sources of every cluster of targets.
+    fn list(&self) -> &ClusterList;
 
-/// One group of neighbours: where their records are, who they are, what they contribute.
-#[derive(Debug, Clone, Copy)]
-pub struct Neighbors<'a, S, T> {
-    /// Records that the list points into.
-    pub records: &'a [Record<S>],
-    /// A list per cluster of targets.
-    pub list: &'a ClusterList,
-    /// Terms of this group.
-    pub terms: T,
-}
-
-/// Groups of neighbours: one, or a pair of groups whose contributions add up.
-pub trait Sources<const D: usize, Q: Quantity, S: Real>: Sync {
     /// Adds the contributions to the targets of a cluster.
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
         cluster: usize,
         position: &[L; D],
         target: &Target<D, L>,
-        scale: &PairScale,
+        scale: &PairScale<D>,
         sum: &mut Q::Sum<D, L>,
     );
 }
 
-impl<const D: usize, Q, S, A, B> Sources<D, Q, S> for (A, B)
-where
-    Q: Quantity,
-    S: Real,
-    A: Sources<D, Q, S>,
-    B: Sources<D, Q, S>,
-{
-    #[inline(always)]
-    fn add<K: Kernel, L: Lanes<Scalar = S>>(
-        &self,
-        cluster: usize,
-        position: &[L; D],
-        target: &Target<D, L>,
-        scale: &PairScale,
-        sum: &mut Q::Sum<D, L>,
-    ) {
-        self.0.add::<K, L>(cluster, position, target, scale, sum);
-        self.1.add::<K, L>(cluster, position, target, scale, sum);
-    }
+/// Moving neighbours, as the fluid: their gradients lie along the line to them.
+#[derive(Debug, Clone, Copy)]
+pub struct Neighbors<'a, S, T, M> {
+    /// Records that the list points into.
+    pub records: &'a [Record<S>],
+    /// A list per cluster of targets.
+    pub list: &'a ClusterList,
+    /// Terms of this group.
+    pub terms: T,
+    /// How coordinates are subtracted.
+    pub metric: PhantomData<M>,
 }
 
-impl<const D: usize, Q, S, T> Sources<D, Q, S> for Neighbors<'_, S, T>
+/// Elements of a wall: their records hold the normal in the words of velocity and the depth below
+/// the surface (m) in that of the quantity.
+#[derive(Debug, Clone, Copy)]
+pub struct WallNeighbors<'a, S, T, M> {
+    /// Records that the list points into.
+    pub records: &'a [Record<S>],
+    /// A list per cluster of targets.
+    pub list: &'a ClusterList,
+    /// Term of this group.
+    pub term: T,
+    /// How coordinates are subtracted.
+    pub metric: PhantomData<M>,
+}
+
+impl<const D: usize, Q, S, T, M> Pairs<D, Q, S> for Neighbors<'_, S, T, M>
 where
     Q: Quantity,
     S: Real,
     T: PairTerm<D, Q>,
+    M: Metric,
 {
+    fn list(&self) -> &ClusterList {
+        self.list
+    }
+
     #[inline(always)]
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
         cluster: usize,
         position: &[L; D],
         target: &Target<D, L>,
-        scale: &PairScale,
+        scale: &PairScale<D>,
         sum: &mut Q::Sum<D, L>,
     ) {
         if T::EMPTY {
@@ -90,11 +85,11 @@ where
         let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
         let to_q: L = lanes(scale.unit / scale.support_radius);
         // Copies, so that the constants of the terms are spread over the lanes once and not per pair.
-        let Self { records, list, terms } = *self;
+        let Self { records, list, terms, .. } = *self;
         for &j in list.sources(cluster) {
             let record = &records[j as usize];
             let offset: [L; D] =
-                from_fn(|k| L::coordinate_difference(position[k], L::splat(record[k])));
+                from_fn(|k| M::difference(position[k], L::splat(record[k]), scale, k));
             let distance2 = dot(&offset, &offset);
             let distance = distance2.sqrt();
             let weight = K::slope_shape(distance * to_q) * L::splat(record[WEIGHT]);
@@ -108,49 +103,83 @@ where
     }
 }
 
-/// Computes `rates[k]` for target `first + k`.
+impl<const D: usize, Q, S, T, M> Pairs<D, Q, S> for WallNeighbors<'_, S, T, M>
+where
+    Q: Quantity,
+    S: Real,
+    T: WallTerm<D, Q>,
+    M: Metric,
+{
+    fn list(&self) -> &ClusterList {
+        self.list
+    }
+
+    #[inline(always)]
+    fn add<K: Kernel, L: Lanes<Scalar = S>>(
+        &self,
+        cluster: usize,
+        position: &[L; D],
+        target: &Target<D, L>,
+        scale: &PairScale<D>,
+        sum: &mut Q::Sum<D, L>,
+    ) {
+        let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
+        let to_q: L = lanes(scale.unit / scale.support_radius);
+        let Self { records, list, term, .. } = *self;
+        for &j in list.sources(cluster) {
+            let record = &records[j as usize];
+            let offset: [L; D] =
+                from_fn(|k| M::difference(position[k], L::splat(record[k]), scale, k));
+            let distance2 = dot(&offset, &offset);
+            let distance = distance2.sqrt();
+            let weight = K::slope_shape(distance * to_q) * L::splat(record[WEIGHT]);
+            let normal: [L; D] = from_fn(|k| L::splat(record[velocity_word(k)]));
+            let height = dot(&offset, &normal);
+            let depth = L::splat(record[QUANTITY]);
+            let pair = WallPair { offset, normal, height, depth, weight, unit, per_unit };
+            term.add(target, &pair, sum);
+        }
+    }
+}
+
+/// Computes `rates[k]` for target `first + k`. Returns whether any of them had a source at all; if
+/// none had, `rates` are left alone.
 ///
-/// * `clusters`: those of the lists in `sources`. Most efficient when the range of targets begins
-///   and ends with a cluster.
-/// * `records`: records of the targets, indexed like the clusters.
+/// * `records`: records of the targets, indexed as in the list.
 /// * `density`: kg/m³ of the targets, in order.
-/// * `sources`: groups of neighbours with their terms, usually `(fluid, walls)`. A group whose terms
-///   are `()` leaves no instruction.
+///
+/// The range of targets had better begin and end with a cluster.
 pub fn sweep<const D: usize, Q, K, S, N>(
-    clusters: &Clusters,
     first: usize,
     records: &[Record<S>],
     density: &[f64],
-    scale: PairScale,
-    sources: &N,
+    scale: &PairScale<D>,
+    pairs: &N,
     rates: &mut [Q::Rate<D>],
-) where
+) -> bool
+where
     Q: Quantity,
     K: Kernel,
     S: Real,
-    N: Sources<D, Q, S>,
+    N: Pairs<D, Q, S>,
 {
     assert_eq!(density.len(), rates.len(), "one density per target");
+    let list = pairs.list();
+    let range = first..first + rates.len();
+    if list.is_empty() || list.clusters().within(range).all(|(c, _)| list.sources(c).is_empty()) {
+        return false;
+    }
     let kernel = PhantomData::<K>;
-    S::dispatch(Chunk::<D, Q, K, S, N> {
-        clusters,
-        first,
-        records,
-        density,
-        scale,
-        sources,
-        rates,
-        kernel,
-    });
+    S::dispatch(Chunk::<D, Q, K, S, N> { first, records, density, scale, pairs, rates, kernel });
+    true
 }
 
 struct Chunk<'a, const D: usize, Q: Quantity, K, S, N> {
-    clusters: &'a Clusters,
     first: usize,
     records: &'a [Record<S>],
     density: &'a [f64],
-    scale: PairScale,
-    sources: &'a N,
+    scale: &'a PairScale<D>,
+    pairs: &'a N,
     rates: &'a mut [Q::Rate<D>],
     kernel: PhantomData<K>,
 }
@@ -160,7 +189,7 @@ where
     Q: Quantity,
     K: Kernel,
     S: Real,
-    N: Sources<D, Q, S>,
+    N: Pairs<D, Q, S>,
 {
     type Scalar = S;
     type Output = ();
@@ -169,7 +198,7 @@ where
     fn run<L: Lanes<Scalar = S>>(mut self) {
         const { assert!(CLUSTER.is_multiple_of(L::LANES)) };
         let end = self.first + self.rates.len();
-        for (cluster, targets) in self.clusters.within(self.first..end) {
+        for (cluster, targets) in self.pairs.list().clusters().within(self.first..end) {
             for start in targets.clone().step_by(L::LANES) {
                 self.lanes::<L>(cluster, start..targets.end.min(start + L::LANES));
             }
@@ -182,16 +211,20 @@ where
     Q: Quantity,
     K: Kernel,
     S: Real,
-    N: Sources<D, Q, S>,
+    N: Pairs<D, Q, S>,
 {
     /// The rates of up to so many targets as there are lanes.
     #[inline(always)]
     fn lanes<L: Lanes<Scalar = S>>(&mut self, cluster: usize, targets: Range<usize>) {
         let count = targets.len();
+        let own = targets.start - self.first..targets.end - self.first;
+        if self.pairs.list().sources(cluster).is_empty() {
+            self.rates[own].fill(Q::Rate::default());
+            return;
+        }
         // Lanes without a target repeat the last one.
         let index: [u32; CLUSTER] = from_fn(|l| (targets.start + l.min(count - 1)) as u32);
         let words = L::gather(self.records, &index);
-        let own = targets.start - self.first..targets.end - self.first;
         let density = &self.density[own.clone()];
         let of_lanes = |f: fn(f64) -> f64| -> L {
             let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f(density[l.min(count - 1)])));
@@ -205,7 +238,7 @@ where
         };
         let position: [L; D] = from_fn(|k| words[k]);
         let mut sum = Q::zero();
-        self.sources.add::<K, L>(cluster, &position, &target, &self.scale, &mut sum);
+        self.pairs.add::<K, L>(cluster, &position, &target, self.scale, &mut sum);
         Q::rates(&sum, density, &mut self.rates[own]);
     }
 }

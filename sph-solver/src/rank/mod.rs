@@ -2,14 +2,16 @@
 
 pub(crate) mod costs;
 mod rebuild;
-mod solids;
 mod traveller;
+mod walls;
 
 use crate::block::FluidColumns;
 use crate::passes::{DENSEST, Surroundings};
 use crate::records::{Encoder, Record, record};
+use crate::space::PairScale;
 use crate::state::State;
 use crate::terms::Acceleration;
+use crate::walls::{WallElements, WallSet};
 use bytemuck::Pod;
 use sph_decomp::{Askew, Halo, HaloPlan, Orb, Parts};
 use sph_kernels::Real;
@@ -18,22 +20,22 @@ use sph_neighbors::{CellList, ClusterList};
 /// The particles of a rank.
 ///
 /// Owned particles are columns of [`State`]. Records hold `[local | inner | outer]` of the fluid,
-/// twice because a pass reads one copy and writes the other, and once all solids, owned or not, that
-/// the fluid of this rank can see.
+/// twice because a pass reads one copy and writes the other, and once all elements of walls, owned or
+/// not, that the fluid of this rank can see.
 #[derive(Debug, Clone, Default)]
 pub struct Rank<const D: usize, S: Real> {
     /// Owned fluid particles.
     pub state: State<D>,
-    /// Owned solid particles. They are at rest.
-    pub solids: State<D>,
+    /// Owned elements of walls.
+    pub elements: WallElements<D>,
     /// Layout of the fluid.
     pub fluid: Parts,
-    /// Layout of the solids.
+    /// Layout of the elements of walls.
     pub solid: Parts,
     /// Fluid neighbours of the owned fluid particles.
     pub near_fluid: ClusterList,
-    /// Solid neighbours of the owned fluid particles.
-    pub near_walls: ClusterList,
+    /// Walls that the fluid of this rank can see, with their elements near it.
+    pub walls: Vec<WallSet<D, S>>,
     /// Which owned fluid particles are spray, see [`crate::spray`].
     pub spray: Vec<bool>,
     /// Acceleration of the owned fluid particles by pair forces (without gravity), m/s².
@@ -44,9 +46,8 @@ pub struct Rank<const D: usize, S: Real> {
     deviation: Vec<Record<S>>,
     /// Records with pressures.
     pressure: Vec<Record<S>>,
-    walls: Vec<Record<S>>,
-    /// Where they are; none before they are settled.
-    wall_cells: Option<CellList<D>>,
+    /// Whether the walls are where the fluid of this rank can see them.
+    settled: bool,
     /// Where the fluid is, outer particles included.
     cells: Option<CellList<D>>,
     /// Lanes that were pairs, of all that were computed, when the fluid was last sorted.
@@ -59,7 +60,7 @@ pub struct Rank<const D: usize, S: Real> {
 
 /// The record of particle `i`, with its density deviation.
 fn record_of<const D: usize, S: Real>(
-    encoder: &Encoder,
+    encoder: &Encoder<D, S>,
     density0: f64,
     state: &State<D>,
     i: usize,
@@ -73,10 +74,8 @@ fn record_of<const D: usize, S: Real>(
 pub struct Passing<'a, const D: usize, S> {
     /// Fluid neighbours.
     pub near_fluid: &'a ClusterList,
-    /// Solid neighbours.
-    pub near_walls: &'a ClusterList,
-    /// Records of solids.
-    pub walls: &'a [Record<S>],
+    /// Walls.
+    pub walls: &'a [WallSet<D, S>],
     /// Layout of the fluid.
     pub parts: Parts,
     /// Who sends what.
@@ -98,30 +97,21 @@ pub struct Passing<'a, const D: usize, S> {
 }
 
 impl<'a, const D: usize, S> Passing<'a, D, S> {
-    /// The surroundings of the fluid with the terms of a pass.
-    pub fn surroundings<F, W>(&self, fluid: F, wall: W) -> Surroundings<'a, S, F, W> {
-        Surroundings {
-            near_fluid: self.near_fluid,
-            fluid,
-            walls: self.walls,
-            near_walls: self.near_walls,
-            wall,
-        }
+    /// The surroundings of the fluid.
+    pub fn surroundings(&self, scale: &'a PairScale<D>) -> Surroundings<'a, D, S> {
+        Surroundings { near_fluid: self.near_fluid, walls: self.walls, scale }
     }
 }
 
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
-    /// Holds `state`; nothing is built yet.
-    pub fn new(state: State<D>) -> Self {
-        let (state, solids) = solids::apart(state);
-        Self { state, solids, ..Self::default() }
+    /// Holds fluid and walls; nothing is built yet.
+    pub fn new(state: State<D>, elements: WallElements<D>) -> Self {
+        Self { state, elements, ..Self::default() }
     }
 
-    /// All owned particles: fluid, then solids.
-    pub fn whole_state(&self) -> State<D> {
-        let mut whole = self.state.clone();
-        whole.append(&self.solids);
-        whole
+    /// Pairs of the owned fluid particles with fluid and walls.
+    pub fn pairs(&self) -> u64 {
+        self.near_fluid.pairs() + self.walls.iter().map(|wall| wall.near.pairs()).sum::<u64>()
     }
 
     /// Everything that a pass needs.
@@ -129,7 +119,6 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         let n = self.fluid.owned();
         Passing {
             near_fluid: &self.near_fluid,
-            near_walls: &self.near_walls,
             walls: &self.walls,
             parts: self.fluid,
             plan: &self.plan,
@@ -170,13 +159,13 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Bytes of particle data and lists on this rank.
     pub fn bytes(&self) -> usize {
         let record = size_of::<Record<S>>();
-        let column = 2 * size_of::<[f64; D]>() + 2 * 8 + 8 + 2;
-        (self.state.len() + self.solids.len()) * column
-            + (self.deviation.len() + self.pressure.len() + self.walls.len()) * record
+        let column = 2 * size_of::<[f64; D]>() + 2 * 8 + 8;
+        self.state.len() * column
+            + self.elements.bytes()
+            + (self.deviation.len() + self.pressure.len()) * record
             + self.acceleration.len() * (size_of::<[f64; D]>() + 8)
             + self.near_fluid.bytes()
-            + self.near_walls.bytes()
             + self.cells.as_ref().map_or(0, CellList::bytes)
-            + self.wall_cells.as_ref().map_or(0, CellList::bytes)
+            + self.walls.iter().map(WallSet::bytes).sum::<usize>()
     }
 }

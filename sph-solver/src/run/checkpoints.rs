@@ -40,6 +40,7 @@ pub fn save<const D: usize>(
     state: State<D>,
     clock: Clock,
     progress: Progress,
+    loads: Vec<f64>,
 ) -> Result<(), RunError> {
     let mut columns = state.into_columns();
     gather_by_id(comm, &mut columns, |columns| columns.0.clone())?;
@@ -51,7 +52,6 @@ pub fn save<const D: usize>(
         .with("velocity", &state.velocity)
         .with("density", &state.density)
         .with("mass", &state.mass)
-        .with("kind", &state.kind)
         .with_attribute("dt", clock.dt)
         .with_attribute("largest_speed_squared", clock.extremes.speed2)
         .with_attribute("largest_acceleration_squared", clock.extremes.acceleration2)
@@ -59,6 +59,7 @@ pub fn save<const D: usize>(
         .with_attribute("next_sample", progress.next_sample)
         .with_attribute("next_checkpoint", progress.next_checkpoint)
         .with_attribute("lost_particles", progress.lost)
+        .with_attribute("loads", loads)
         .with_attribute("fingerprint", plan.fingerprint.as_str())
         .with_attribute("scene", plan.scene_text.as_str());
     write_checkpoint(plan.out.join(checkpoint_name(clock.step)), &checkpoint)?;
@@ -66,19 +67,32 @@ pub fn save<const D: usize>(
     Ok(())
 }
 
+/// What a run goes on from.
+#[derive(Debug)]
+pub struct Loaded<const D: usize> {
+    /// Particles of this rank.
+    pub state: State<D>,
+    /// Clock.
+    pub clock: Clock,
+    /// Progress of the outputs.
+    pub progress: Progress,
+    /// Loads on solids, as [`LoadLog::save`](super::load_log::LoadLog::save) gave them.
+    pub loads: Vec<f64>,
+}
+
 /// Particles of this rank, clock and progress from the latest whole checkpoint. The number of ranks
 /// may differ from that of the run that wrote it. Collective.
 pub fn load<const D: usize>(
     comm: &dyn Communicator,
     plan: &RunPlan<D>,
-) -> Result<(State<D>, Clock, Progress), RunError> {
+) -> Result<Loaded<D>, RunError> {
     let mine = load_here(comm, plan).and_then(|loaded| {
-        let (time, end) = (loaded.1.time, plan.end_time);
+        let (time, end) = (loaded.clock.time, plan.end_time);
         if time < end { Ok(loaded) } else { Err(RunError::NothingLeft { time, end }) }
     });
     // Each rank has looked for itself, perhaps on another machine: only agreement counts.
     let found = match &mine {
-        Ok((_, clock, _)) => format!("step {}", clock.step),
+        Ok(loaded) => format!("step {}", loaded.clock.step),
         Err(RunError::NothingToResume { .. }) => "nothing".into(),
         Err(RunError::OtherScene { .. }) => "another scene".into(),
         Err(_) => "an error".into(),
@@ -96,7 +110,7 @@ pub fn load<const D: usize>(
 fn load_here<const D: usize>(
     comm: &dyn Communicator,
     plan: &RunPlan<D>,
-) -> Result<(State<D>, Clock, Progress), RunError> {
+) -> Result<Loaded<D>, RunError> {
     let none = || RunError::NothingToResume { path: plan.out.clone() };
     if !plan.out.is_dir() {
         return Err(none());
@@ -127,13 +141,13 @@ fn load_here<const D: usize>(
     let share = share(comm, file.len());
     let state = State {
         id: file.ids[share.clone()].to_vec(),
-        kind: file.column::<u16>("kind")?[share.clone()].to_vec(),
         mass: file.column::<f64>("mass")?[share.clone()].to_vec(),
         density: file.column::<f64>("density")?[share.clone()].to_vec(),
         position: file.positions[share.clone()].to_vec(),
         velocity: file.column::<[f64; D]>("velocity")?[share].to_vec(),
     };
-    Ok((state, clock, progress))
+    let loads = attributes.f64_array("loads")?.to_vec();
+    Ok(Loaded { state, clock, progress, loads })
 }
 
 /// The part of `n` particles that a rank begins with: where they belong is found out later.

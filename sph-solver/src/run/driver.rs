@@ -4,19 +4,22 @@ use super::checkpoints::{self, Progress};
 use super::digest::Digest;
 use super::files::Files;
 use super::gather::gather_by_id;
+use super::load_log::{LoadLog, LoadTotal};
 use super::plan::RunPlan;
 use super::samples::{self, Budget};
 use super::schedule::Schedule;
 use crate::error::RunError;
+use crate::loads::LoadScale;
 use crate::model::Model;
-use crate::physics::Physics;
+use crate::scheme::Scheme;
 use crate::simulation::{FullStep, Lost, Simulation};
 use crate::state::State;
 use crate::team::Team;
 use crate::timings::Phase;
+use crate::walls::WallElements;
 use bytemuck::Pod;
 use sph_decomp::Communicator;
-use sph_kernels::{Kernel, Real};
+use sph_kernels::Real;
 use std::time::{Duration, Instant};
 
 /// How far a run has come, for whoever watches it.
@@ -51,6 +54,8 @@ pub struct Finished<const D: usize> {
     pub time_step: f64,
     /// Particles taken out, on all ranks, over the whole run.
     pub lost: u64,
+    /// Loads on the solids over the whole run, by name.
+    pub loads: Vec<(String, LoadTotal)>,
     /// Snapshots written by this process.
     pub snapshots: u64,
     /// Time of the checkpoint that the run continued.
@@ -61,24 +66,23 @@ pub struct Finished<const D: usize> {
 
 /// Runs one rank to the end. Collective. `state` is the share of the initial particles of this
 /// rank; a resumed run drops it for that of the checkpoint.
-pub fn drive<'a, const D: usize, S, K, P>(
+pub fn drive<'a, const D: usize, S: Real + Pod>(
     comm: &'a dyn Communicator,
     team: Team,
     model: Model<D>,
-    physics: P,
+    scheme: Scheme<D, S>,
     state: State<D>,
+    elements: WallElements<D>,
     plan: &RunPlan<D>,
     watch: &(dyn Fn(Status) + Sync),
-) -> Result<(Simulation<'a, D, S, K, P>, Finished<D>), RunError>
-where
-    S: Real + Pod,
-    K: Kernel,
-    P: Physics<D>,
-{
+) -> Result<(Simulation<'a, D, S>, Finished<D>), RunError> {
     let start = Instant::now();
+    let solids = model.solids.len();
+    let mut loads = LoadLog::new(solids, load_scale(&model));
     let (state, clock, progress) = if plan.resume {
-        let (state, clock, progress) = checkpoints::load(comm, plan)?;
-        (state, Some(clock), progress)
+        let loaded = checkpoints::load(comm, plan)?;
+        loads.restore(&loaded.loads);
+        (loaded.state, Some(loaded.clock), loaded.progress)
     } else {
         (state, None, Progress::START)
     };
@@ -88,7 +92,9 @@ where
     if comm.rank() == 0 {
         clear(plan, resumed_at.is_some())?;
     }
-    let mut files = if comm.rank() == 0 { Some(Files::open(plan, written_until)?) } else { None };
+    let names: Vec<&str> = model.solids.iter().map(|solid| solid.name.as_str()).collect();
+    let mut files =
+        if comm.rank() == 0 { Some(Files::open(plan, &names, written_until)?) } else { None };
     let mut out = Outputs {
         comm,
         plan,
@@ -96,9 +102,13 @@ where
         samples: Schedule::new(plan.samples).from(progress.next_sample),
         checkpoints: Schedule::new(plan.checkpoints).from(progress.next_checkpoint),
         lost: progress.lost,
+        loads,
         first_budget: None,
     };
-    let mut simulation = Simulation::<D, S, K, P>::new(comm, team, model, physics, state, clock)?;
+    let mut simulation = Simulation::new(comm, team, model, scheme, state, elements, clock)?;
+    if solids > 0 {
+        simulation.count_loads(out.loads.scale());
+    }
     let begin = simulation.time();
     if resumed_at.is_none() {
         out.walls(&simulation, files.as_mut())?;
@@ -116,17 +126,23 @@ where
         let time_step = simulation.time_step();
         let report = last || out.snapshots.due(time) || out.samples.due(time);
         let full = simulation.step(report)?;
+        if solids > 0 {
+            out.loads.record(comm, simulation.loads(), time_step, simulation.time_step())?;
+        }
         out.lost(&mut simulation, files.as_mut())?;
         if let Some(full) = full {
-            let budget = out.report::<S, K, P>(&simulation, &full, last, files.as_mut())?;
+            let budget = out.report(&simulation, &full, last, files.as_mut())?;
             if last {
                 let first = out.first_budget.unwrap_or(budget);
+                let solids = simulation.model().solids.iter().map(|solid| solid.name.clone());
+                let loads = solids.zip(out.loads.totals(comm)?).collect();
                 let finished = Finished {
                     digest: digest(comm, &full)?,
                     last: full,
                     budgets: (first, budget),
                     time_step,
                     lost: out.lost,
+                    loads,
                     snapshots: files.map_or(0, |files| files.snapshots()),
                     resumed_at,
                     elapsed: start.elapsed(),
@@ -144,6 +160,12 @@ where
             exposed_seconds: simulation.exposed().wait_seconds,
         });
     }
+}
+
+fn load_scale<const D: usize>(model: &Model<D>) -> LoadScale {
+    let density0 = model.equation_of_state.density0();
+    let mass = density0 * model.spacing.powi(D as i32);
+    LoadScale::new(mass, model.spacing, model.limits.sound_speed)
 }
 
 /// Takes away what an earlier run left in the folder and could be mistaken for a result of this one.
@@ -167,30 +189,32 @@ struct Outputs<'a, const D: usize> {
     samples: Schedule,
     checkpoints: Schedule,
     lost: u64,
+    loads: LoadLog,
     first_budget: Option<Budget<D>>,
 }
 
 impl<const D: usize> Outputs<'_, D> {
-    fn walls<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn walls<S: Real + Pod>(
         &self,
-        simulation: &Simulation<'_, D, S, K, P>,
+        simulation: &Simulation<'_, D, S>,
         files: Option<&mut Files>,
     ) -> Result<(), RunError> {
         if self.plan.snapshots.is_none() {
             return Ok(());
         }
-        let mut columns = simulation.rank().solids.clone().into_columns();
+        let mut columns = simulation.rank().elements.clone().into_columns();
         gather_by_id(self.comm, &mut columns, |columns| columns.0.clone())?;
-        let walls = State::from_columns(columns);
+        let walls = WallElements::from_columns(columns);
+        let density0 = simulation.model().equation_of_state.density0();
         match files {
-            Some(files) if !walls.is_empty() => files.walls(&walls),
+            Some(files) if !walls.is_empty() => files.walls(&walls, density0),
             _ => Ok(()),
         }
     }
 
-    fn lost<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn lost<S: Real + Pod>(
         &mut self,
-        simulation: &mut Simulation<'_, D, S, K, P>,
+        simulation: &mut Simulation<'_, D, S>,
         files: Option<&mut Files>,
     ) -> Result<(), RunError> {
         // Particles are taken out in rebuilds only, on all ranks in the same step.
@@ -217,9 +241,9 @@ impl<const D: usize> Outputs<'_, D> {
         files.lost(&all.collect::<Vec<_>>())
     }
 
-    fn checkpoint<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn checkpoint<S: Real + Pod>(
         &mut self,
-        simulation: &Simulation<'_, D, S, K, P>,
+        simulation: &Simulation<'_, D, S>,
     ) -> Result<(), RunError> {
         let _timer = simulation.timings().measure(Phase::Output);
         // Also makes sure that no rank has met a fault: a bad state never becomes a checkpoint.
@@ -231,12 +255,13 @@ impl<const D: usize> Outputs<'_, D> {
             next_checkpoint: self.checkpoints.next(),
             lost: self.lost,
         };
-        checkpoints::save(self.comm, self.plan, simulation.state(), clock, progress)
+        let loads = self.loads.save(self.comm)?;
+        checkpoints::save(self.comm, self.plan, simulation.state(), clock, progress, loads)
     }
 
-    fn report<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn report<S: Real + Pod>(
         &mut self,
-        simulation: &Simulation<'_, D, S, K, P>,
+        simulation: &Simulation<'_, D, S>,
         full: &FullStep<D>,
         last: bool,
         mut files: Option<&mut Files>,
@@ -248,11 +273,14 @@ impl<const D: usize> Outputs<'_, D> {
         let budget = samples::budget(self.comm, model, full)?;
         self.first_budget.get_or_insert(budget);
         if last || self.samples.due(full.time) {
-            let read = |(_, probe)| samples::read::<D, K>(self.comm, model, full, probe);
+            let kernel = &simulation.scheme().kernel;
+            let read = |(_, probe)| samples::read(self.comm, model, kernel, full, probe);
             let probes = self.plan.probes.iter().map(|(name, probe)| (name, probe));
             let readings = probes.map(read).collect::<Result<Vec<_>, _>>()?;
+            let loads = self.loads.rows(self.comm)?;
             if let Some(files) = files.as_deref_mut() {
                 files.samples(full.time, &budget, &readings)?;
+                files.loads::<D>(full.time, &loads)?;
             }
             self.samples.done(full.time);
         }

@@ -9,10 +9,9 @@ use super::summary::{Meta, Summary};
 use super::table::{Features, Job, Precision, Viscosity, run_job};
 use super::world::World;
 use crate::error::RunError;
-use crate::model::{Model, OnLost};
+use crate::model::{Model, OnLost, SolidModel};
 use crate::scene::{self, Field, ProbeKind, Scene};
 use crate::setup::{Constants, Particles, Setup};
-use crate::state::State;
 use crate::team::Team;
 use sph_decomp::{Blocking, Communicator, RanksError, Solo, ThreadRanks, check_same_build};
 use std::path::PathBuf;
@@ -63,9 +62,9 @@ struct Launch<const D: usize> {
 
 impl<const D: usize> Launch<D> {
     fn new(scene: &Scene, options: &RunOptions) -> Result<Self, RunError> {
-        let Setup { particles, constants, .. } = Setup::<D>::new(scene)?;
+        let Setup { particles, constants, solids, .. } = Setup::<D>::new(scene)?;
         let features = features(scene, &constants, &particles);
-        let model = model(&constants);
+        let model = model(&constants, solids);
         let fingerprint = fingerprint(&model, &features, &particles);
         let output = &scene.output;
         let plan = RunPlan {
@@ -137,13 +136,15 @@ impl<const D: usize> Launch<D> {
         );
         check_same_build(&comm, tag.as_bytes())?;
         let silent = |_: Status| ();
+        let fluid = self.particles.fluid().len();
         run_job(
             Job {
                 comm,
                 team: Team::new(threads)?,
                 model: self.model.clone(),
                 plan: &self.plan,
-                state: self.state(share(comm, self.particles.len())),
+                state: self.particles.state(share(comm, fluid)),
+                elements: self.particles.walls(share(comm, self.particles.len() - fluid)),
                 watch: if comm.rank() == 0 { watch } else { &silent },
                 meta: Meta {
                     name: self.plan.name.clone(),
@@ -159,21 +160,9 @@ impl<const D: usize> Launch<D> {
             self.features,
         )
     }
-
-    fn state(&self, share: std::ops::Range<usize>) -> State<D> {
-        let all = &self.particles;
-        State {
-            id: share.clone().map(|i| i as u64).collect(),
-            kind: all.kind[share.clone()].to_vec(),
-            mass: all.mass[share.clone()].to_vec(),
-            density: all.density[share.clone()].to_vec(),
-            position: all.position[share.clone()].to_vec(),
-            velocity: all.velocity[share].to_vec(),
-        }
-    }
 }
 
-fn model<const D: usize>(constants: &Constants<D>) -> Model<D> {
+fn model<const D: usize>(constants: &Constants<D>, solids: Vec<SolidModel<D>>) -> Model<D> {
     Model {
         spacing: constants.spacing,
         support_radius: constants.support_radius,
@@ -182,6 +171,8 @@ fn model<const D: usize>(constants: &Constants<D>) -> Model<D> {
         equation_of_state: constants.equation_of_state,
         limits: constants.step_limits(),
         domain: constants.domain,
+        periods: constants.periods,
+        solids,
         on_lost: match constants.on_lost {
             scene::OnLost::Stop => OnLost::Stop,
             scene::OnLost::Remove => OnLost::Remove,

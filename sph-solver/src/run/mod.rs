@@ -7,6 +7,7 @@ pub mod driver;
 pub mod files;
 pub mod gather;
 pub mod launch;
+pub mod load_log;
 pub mod plan;
 pub mod samples;
 pub mod schedule;

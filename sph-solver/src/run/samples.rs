@@ -1,10 +1,11 @@
 //! Numbers sampled from a full step: energies, momentum, probes. The same bits on any ranks.
 
 use crate::error::RunError;
+use crate::kernel_shape::KernelShape;
 use crate::model::Model;
 use crate::simulation::FullStep;
+use crate::space;
 use sph_decomp::{Communicator, ExactSum, global_sums};
-use sph_kernels::Kernel;
 
 /// What a probe reads at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,9 +93,10 @@ pub fn budget<const D: usize>(
 
 /// Reads a probe; one number per column of [`Probe::columns`]. A point without fluid within one
 /// support radius reads 0, a front without fluid −∞. Collective.
-pub fn read<const D: usize, K: Kernel>(
+pub fn read<const D: usize>(
     comm: &dyn Communicator,
     model: &Model<D>,
+    kernel: &KernelShape,
     full: &FullStep<D>,
     probe: &Probe<D>,
 ) -> Result<Vec<f64>, RunError> {
@@ -109,11 +111,12 @@ pub fn read<const D: usize, K: Kernel>(
             let radius = model.support_radius;
             let mut sums = vec![ExactSum::new(); 1 + quantities.len()];
             for (i, x) in full.position.iter().enumerate() {
-                let distance = (0..D).map(|k| (x[k] - at[k]).powi(2)).sum::<f64>().sqrt();
+                let offset = space::offset(x, at, &model.periods);
+                let distance = offset.iter().map(|d| d * d).sum::<f64>().sqrt();
                 if distance >= radius {
                     continue;
                 }
-                let weight = K::w(distance / radius) * full.mass[i] / full.density[i];
+                let weight = (kernel.w)(distance / radius) * full.mass[i] / full.density[i];
                 sums[0].add(weight);
                 for (sum, quantity) in sums[1..].iter_mut().zip(quantities) {
                     sum.add(weight * value(model, full, i, *quantity));

@@ -35,7 +35,9 @@ pub struct Constants<const D: usize> {
     pub viscosity: Option<f64>,
     /// Lowest and highest corner of the box that particles may be in, m.
     pub domain: ([f64; D], [f64; D]),
-    /// What to do with a particle outside of it.
+    /// Lengths after which the axes repeat, m; none for an open axis.
+    pub periods: [Option<f64>; D],
+    /// What to do with a particle outside of the domain.
     pub on_lost: OnLost,
 }
 
@@ -135,6 +137,7 @@ mod tests {
             density_diffusion: 0.1,
             viscosity: None,
             domain: ([0.0; 2], [1.0; 2]),
+            periods: [None; 2],
             on_lost: OnLost::Stop,
         }
     }

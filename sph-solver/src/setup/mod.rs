@@ -32,6 +32,7 @@ pub use report::{
 pub use sampling::{BlockKind, Sample};
 
 use crate::eos::EquationOfState;
+use crate::model::SolidModel;
 use crate::scene::{self, At, Equation, ErrorKind, Fluid, Kernel, Region, Scene, SceneError};
 use fluid::{Column, Filling};
 use shapes::Shapes;
@@ -45,8 +46,8 @@ pub struct Setup<const D: usize> {
     pub particles: Particles<D>,
     /// Constants.
     pub constants: Constants<D>,
-    /// Names of the solids; the particles of solid k have kind 1 + k.
-    pub solids: Vec<String>,
+    /// The solids; the particles of solid k have kind 1 + k.
+    pub solids: Vec<SolidModel<D>>,
     /// Largest speed expected in the run, m/s.
     pub expected_speed: f64,
     /// Largest speed at the start, m/s.
@@ -102,6 +103,7 @@ impl<const D: usize> Setup<D> {
             density_diffusion: *numerics.density_diffusion,
             viscosity: scene.viscosity(),
             domain: (domain.min, domain.max),
+            periods: domain::periods(scene, &domain, spacing, Geometry::<D>::reach(scene))?,
             on_lost: numerics.on_lost,
         };
         let mass = density0 * spacing.powi(D as i32);
@@ -111,7 +113,7 @@ impl<const D: usize> Setup<D> {
         Ok(Self {
             particles,
             constants,
-            solids: solids.into_iter().map(|solid| solid.name).collect(),
+            solids: walls::models(scene, &solids),
             expected_speed,
             initial_speed,
             meshes,

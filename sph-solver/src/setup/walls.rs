@@ -4,6 +4,7 @@ use super::constants::Constants;
 use super::particles::Particles;
 use super::shapes::Shapes;
 use super::{LARGEST, MOST_PARTICLES, lattice_error, too_many};
+use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
 use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Solid, WallParticles, wall_particles};
 
@@ -35,6 +36,30 @@ pub fn solids<const D: usize>(
     scene.solid.iter().map(make).collect()
 }
 
+/// What a run knows of the solids besides their particles.
+pub fn models<const D: usize>(scene: &Scene, solids: &[Solid<D>]) -> Vec<SolidModel<D>> {
+    let viscous = scene.viscosity().is_some();
+    let model = |(solid, keys): (&Solid<D>, &At<scene::Solid>)| {
+        let bounds = solid.shape.bounding_box();
+        let middle = |k: usize| {
+            let middle = 0.5 * (bounds.min[k] + bounds.max[k]);
+            if middle.is_finite() { middle } else { 0.0 }
+        };
+        SolidModel {
+            name: solid.name.clone(),
+            center: match &keys.moments_about {
+                Some(point) => scene::vector(point),
+                None => std::array::from_fn(middle),
+            },
+            slips: match keys.wall_friction.map(|friction| *friction) {
+                Some(friction) => friction == scene::WallFriction::Slip,
+                None => !viscous,
+            },
+        }
+    };
+    solids.iter().zip(&scene.solid).map(model).collect()
+}
+
 /// Adds the wall particles, solid by solid.
 pub fn add_walls<const D: usize>(
     scene: &Scene,
@@ -46,6 +71,7 @@ pub fn add_walls<const D: usize>(
 ) -> Result<(), SceneError> {
     let bounds = Aabb::new(constants.domain.0, constants.domain.1);
     let walls = find_walls(scene, solids, lattice, &bounds, constants.support_radius)?;
+
     let total = particles.len() + walls.positions.len();
     if total as f64 > MOST_PARTICLES {
         return Err(too_many(scene, total as f64, LARGEST));
@@ -55,7 +81,10 @@ pub fn add_walls<const D: usize>(
     order.sort_by_key(|wall| walls.solids[*wall]);
     for wall in order {
         let kind = 1 + walls.solids[wall] as u16;
-        particles.push(walls.positions[wall], [0.0; D], constants.density0, mass, kind);
+        let (x, solid) = (walls.positions[wall], &solids[walls.solids[wall] as usize]);
+        particles.push(x, [0.0; D], constants.density0, mass, kind);
+        particles.normal.push(solid.normal(&x));
+        particles.depth.push(solid.depth_in_solid(&x));
     }
     Ok(())
 }
@@ -85,6 +114,7 @@ pub fn find_walls<const D: usize>(
         };
         return Err(scene.error(place, kind));
     }
-    wall_particles(solids, lattice, support, &Domain::new(*bounds))
+    let domain = Domain { bounds: *bounds, periodic: scene.periodic_axes() };
+    wall_particles(solids, lattice, support, &domain)
         .map_err(|error| lattice_error(scene, place, &error))
 }

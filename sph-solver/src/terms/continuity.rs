@@ -4,7 +4,7 @@ use sph_kernels::Lanes;
 /// Conservation of mass: dρ_i/dt = ρ_i Σ_j (v_i − v_j)·∇W_ij V_j.
 ///
 /// Source: Antuono, Colagrossi, Marrone & Molteni (2010), Comput. Phys. Commun. 181, eq. 3 (the
-/// term without diffusion). Wall neighbours take part with the velocity of the wall.
+/// term without diffusion).
 #[derive(Debug, Clone, Copy)]
 pub struct Continuity;
 

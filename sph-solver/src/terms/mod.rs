@@ -8,6 +8,9 @@
 //! `V = m/ρ`. Every sum over pairs here is one of gradients, so a term gives only the *coefficient*
 //! in front of `∇W_ij V_j`; the sweep adds up the coefficients of a pair, multiplies once, and
 //! divides by what all pairs of a target share (see [`Quantity`]) once per target.
+//!
+//! Walls are another kind of neighbour: they know their normal n, and what a frictionless wall does
+//! lies along it, so a [`WallTerm`] adds to the sum by itself.
 
 mod artificial_viscosity;
 mod continuity;
@@ -15,15 +18,19 @@ mod delta_continuity;
 mod pressure;
 mod quantity;
 mod viscosity;
+mod wall_continuity;
+mod wall_friction;
 mod wall_pressure;
 
 pub use artificial_viscosity::ArtificialViscosity;
 pub use continuity::Continuity;
 pub use delta_continuity::DeltaContinuity;
 pub use pressure::SymmetricPressure;
-pub use quantity::{Acceleration, Deviation, Pressure, Quantity};
+pub use quantity::{Acceleration, Deviation, Pressure, Quantity, Rate};
 pub use viscosity::LaminarViscosity;
-pub use wall_pressure::OneSidedRiemannWall;
+pub use wall_continuity::WallContinuity;
+pub use wall_friction::NoSlip;
+pub use wall_pressure::WallPressure;
 
 use sph_kernels::{Lanes, Real};
 
@@ -65,6 +72,33 @@ pub struct Pair<const D: usize, L> {
     pub unit: L,
     /// Units per metre.
     pub per_unit: L,
+}
+
+/// Geometry of a pair of a target and an element of a wall, lengths in units of the records unless
+/// said otherwise.
+#[derive(Debug, Clone, Copy)]
+pub struct WallPair<const D: usize, L> {
+    /// r_iw = x_i − x_w, units.
+    pub offset: [L; D],
+    /// n, unit vector out of the wall into the fluid.
+    pub normal: [L; D],
+    /// n·r_iw, units.
+    pub height: L,
+    /// Depth of the element below the surface of the wall, m.
+    pub depth: L,
+    /// w with ∇W_iw V_w = w r_iw, as in [`Pair`].
+    pub weight: L,
+    /// Metres per unit.
+    pub unit: L,
+    /// Units per metre.
+    pub per_unit: L,
+}
+
+/// A contribution of the elements of a wall to a sweep whose targets carry `Q`.
+pub trait WallTerm<const D: usize, Q: Quantity>: Copy + Send + Sync {
+    /// Adds one pair a lane to the sum of the target. Must be finite for every pair, also for
+    /// `r_iw = 0` and for pairs beyond the support.
+    fn add<L: Lanes>(&self, i: &Target<D, L>, pair: &WallPair<D, L>, sum: &mut Q::Sum<D, L>);
 }
 
 /// A contribution of pairs to a sweep whose records carry `Q`.
@@ -175,6 +209,34 @@ pub(crate) mod scalar {
                 per_unit: 1.0 / UNIT,
             },
         )
+    }
+
+    /// Target and an element of a wall with normal `normal`, `depth` below its surface; otherwise as
+    /// [`pair`].
+    pub fn wall(
+        r_iw: [f64; 2],
+        normal: [f64; 2],
+        depth: f64,
+        (velocity, quantity): ([f64; 2], f64),
+        volume: f64,
+        slope: f64,
+    ) -> (Target<2, f64>, WallPair<2, f64>) {
+        let (i, _, pair) = pair(r_iw, (velocity, [0.0; 2]), (quantity, 0.0), volume, slope);
+        let Pair { offset, weight, unit, per_unit, .. } = pair;
+        let height = offset[0] * normal[0] + offset[1] * normal[1];
+        (i, WallPair { offset, normal, height, depth, weight, unit, per_unit })
+    }
+
+    /// What a wall term adds to the rate of the target.
+    pub fn wall_rate<Q: Quantity, T: WallTerm<2, Q>>(
+        term: &T,
+        (i, pair): &(Target<2, f64>, WallPair<2, f64>),
+    ) -> Q::Rate<2> {
+        let mut sum = Q::zero();
+        term.add(i, pair, &mut sum);
+        let mut rates = [Q::Rate::default()];
+        Q::rates(&sum, &[i.density], &mut rates);
+        rates[0]
     }
 
     /// What a term adds to the rate of the target.

@@ -3,12 +3,20 @@
 use super::Pair;
 use sph_kernels::{Lanes, Real};
 use sph_neighbors::CLUSTER;
+use std::ops::AddAssign;
+
+/// What a group of pairs contributes to the change of a particle. Groups add up.
+pub trait Rate: Copy + Default + Send + Sync + AddAssign + 'static {}
+
+impl Rate for f64 {}
+
+impl<const D: usize> Rate for Acceleration<D> {}
 
 /// What word 6 of the records holds while a sweep runs, what the coefficients of its terms multiply,
 /// and what it returns.
 pub trait Quantity: Copy + Send + Sync + 'static {
     /// Result per target.
-    type Rate<const D: usize>: Copy + Default + Send + Sync;
+    type Rate<const D: usize>: Rate;
     /// Sum over the pairs of a target, one target a lane.
     type Sum<const D: usize, L: Lanes>: Copy;
 
@@ -40,6 +48,15 @@ pub struct Pressure;
 /// dv/dt of a particle, m/s².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Acceleration<const D: usize>(pub [f64; D]);
+
+impl<const D: usize> AddAssign for Acceleration<D> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        for (sum, part) in self.0.iter_mut().zip(other.0) {
+            *sum += part;
+        }
+    }
+}
 
 impl<const D: usize> Default for Acceleration<D> {
     fn default() -> Self {

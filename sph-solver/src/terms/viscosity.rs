@@ -5,8 +5,7 @@ use sph_kernels::Lanes;
 /// π_ij = (v_j − v_i)·r_ji / (|r_ij|² + 0.01 h²).
 ///
 /// Source: Monaghan & Gingold (1983), J. Comput. Phys. 52; the factor K and its consistency with
-/// the Laplacian: Colagrossi, Antuono & Le Touzé (2009), Phys. Rev. E 79, eq. 17. With wall
-/// neighbours at the wall's velocity it gives a no-slip wall.
+/// the Laplacian: Colagrossi, Antuono & Le Touzé (2009), Phys. Rev. E 79, eq. 17.
 #[derive(Debug, Clone, Copy)]
 pub struct LaminarViscosity {
     /// Dynamic viscosity μ, Pa s.
