@@ -65,6 +65,7 @@ impl DamBreak {
             },
             domain: ([-margin; 3], [BOX[0] + margin, BOX[1] + margin, 3.0 * BOX[2]]),
             periods: [None; 3],
+            lowest_pressure: f64::NEG_INFINITY,
             on_lost: OnLost::Remove,
             solids: vec![SolidModel { name: "box".into(), center: [0.0; 3], slips: true }],
         }
@@ -81,7 +82,7 @@ impl DamBreak {
         let friction =
             ArtificialViscosity { strength: 0.1 * h * c0 * DENSITY, softening: 0.01 * h * h };
         Scheme::new::<WendlandC2>(density, (SymmetricPressure, friction))
-            .walls(WallContinuity, WallPressure { gravity: model.gravity, sound_speed: c0 })
+            .walls(WallContinuity, WallPressure { sound_speed: c0 })
             .build()
     }
 

@@ -35,6 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         limits: StepLimits { cfl: 1.0, smoothing_length: h, sound_speed, kinematic_viscosity: 0.0 },
         domain: ([-0.5, -0.5], [4.5, 3.5]),
         periods: [None; 2],
+        lowest_pressure: f64::NEG_INFINITY,
         on_lost: OnLost::Stop,
         solids: vec![SolidModel { name: "tank".into(), center: [0.0; 2], slips: true }],
     };
@@ -64,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         softening: 0.01 * h * h,
     };
     let scheme = Scheme::<2, f32>::new::<WendlandC2>(density, (SymmetricPressure, friction))
-        .walls(WallContinuity, WallPressure { gravity, sound_speed })
+        .walls(WallContinuity, WallPressure { sound_speed })
         .build();
     let mut simulation = Simulation::new(&Solo, Team::new(1)?, model, scheme, state, walls, None)?;
     let mut next = 0.0;

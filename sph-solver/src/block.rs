@@ -14,15 +14,28 @@ pub struct FluidColumns<'a, const D: usize> {
     pub density: &'a mut [f64],
     /// Masses, kg.
     pub mass: &'a [f64],
-    /// Whether a particle belongs to spray, see [`crate::spray`].
-    pub spray: &'a [bool],
+    /// ∇p/ρ as walls continue it, m/s².
+    pub pressure_gradient: &'a mut [[f64; D]],
+    /// Lowest pressures that a wall has towards them, Pa.
+    pub lowest_wall_pressure: &'a mut [f64],
 }
 
 impl<'a, const D: usize> FluidColumns<'a, D> {
     /// The block of all owned fluid particles.
     pub fn block<S, R>(self, rates: &'a mut [R], new: &'a mut [Record<S>]) -> Block<'a, D, S, R> {
-        let Self { position, velocity, density, mass, spray } = self;
-        Block { first: 0, position, velocity, density, mass, spray, rates, new }
+        let Self { position, velocity, density, mass, pressure_gradient, lowest_wall_pressure } =
+            self;
+        Block {
+            first: 0,
+            position,
+            velocity,
+            density,
+            mass,
+            pressure_gradient,
+            lowest_wall_pressure,
+            rates,
+            new,
+        }
     }
 }
 
@@ -39,8 +52,10 @@ pub struct Block<'a, const D: usize, S, R> {
     pub density: &'a mut [f64],
     /// Masses, kg.
     pub mass: &'a [f64],
-    /// Whether a particle belongs to spray.
-    pub spray: &'a [bool],
+    /// ∇p/ρ as walls continue it, m/s².
+    pub pressure_gradient: &'a mut [[f64; D]],
+    /// Lowest pressures that a wall has towards them, Pa.
+    pub lowest_wall_pressure: &'a mut [f64],
     /// Results of the flux loop.
     pub rates: &'a mut [R],
     /// Records that the next pass reads.
@@ -64,18 +79,30 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
         let (velocity, velocity2) = self.velocity.split_at_mut(n);
         let (density, density2) = self.density.split_at_mut(n);
         let (mass, mass2) = self.mass.split_at(n);
-        let (spray, spray2) = self.spray.split_at(n);
+        let (gradient, gradient2) = self.pressure_gradient.split_at_mut(n);
+        let (lowest, lowest2) = self.lowest_wall_pressure.split_at_mut(n);
         let (rates, rates2) = self.rates.split_at_mut(n);
         let (new, new2) = self.new.split_at_mut(n);
         (
-            Block { first: self.first, position, velocity, density, mass, spray, rates, new },
+            Block {
+                first: self.first,
+                position,
+                velocity,
+                density,
+                mass,
+                pressure_gradient: gradient,
+                lowest_wall_pressure: lowest,
+                rates,
+                new,
+            },
             Block {
                 first: self.first + n,
                 position: position2,
                 velocity: velocity2,
                 density: density2,
                 mass: mass2,
-                spray: spray2,
+                pressure_gradient: gradient2,
+                lowest_wall_pressure: lowest2,
                 rates: rates2,
                 new: new2,
             },
@@ -99,7 +126,8 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             velocity: self.velocity,
             density: self.density,
             mass: self.mass,
-            spray: self.spray,
+            pressure_gradient: self.pressure_gradient,
+            lowest_wall_pressure: self.lowest_wall_pressure,
             rates: self.rates,
             new: self.new,
         }
@@ -137,7 +165,8 @@ mod tests {
             velocity: &mut v,
             density: &mut d,
             mass: &m,
-            spray: &[false; 10],
+            pressure_gradient: &mut [[0.0; 2]; 10],
+            lowest_wall_pressure: &mut [0.0; 10],
             rates: &mut r,
             new: &mut new,
         };

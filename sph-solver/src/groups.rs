@@ -7,7 +7,7 @@
 
 use crate::records::Record;
 use crate::space::{Open, PairScale, Periodic};
-use crate::sweep::{Neighbors, WallNeighbors, sweep};
+use crate::sweep::{Beside, Neighbors, WallNeighbors, sweep};
 use crate::terms::{PairTerm, Quantity, WallTerm};
 use sph_kernels::{Kernel, Real};
 use sph_neighbors::ClusterList;
@@ -25,6 +25,8 @@ pub struct GroupView<'a, const D: usize, S> {
     pub list: &'a ClusterList,
     /// Scale of the pairs.
     pub scale: &'a PairScale<D>,
+    /// What wall terms are told of the targets; sums over fluid have no use for it.
+    pub beside: Option<Beside<'a, D>>,
 }
 
 /// The sum of the terms of one group over the sources of each target.
@@ -89,7 +91,7 @@ where
         density: &[f64],
         rates: &mut [Q::Rate<D>],
     ) -> bool {
-        let GroupView { targets, sources: records, list, scale } = view;
+        let GroupView { targets, sources: records, list, scale, .. } = view;
         let terms = self.0;
         if scale.is_periodic() {
             let metric = PhantomData::<Periodic>;
@@ -117,15 +119,16 @@ where
         density: &[f64],
         rates: &mut [Q::Rate<D>],
     ) -> bool {
-        let GroupView { targets, sources: records, list, scale } = view;
+        let GroupView { targets, sources: records, list, scale, beside } = view;
+        let Some(beside) = beside else { return false };
         let term = self.0;
         if scale.is_periodic() {
             let metric = PhantomData::<Periodic>;
-            let pairs = WallNeighbors { records, list, term, metric };
+            let pairs = WallNeighbors { records, list, term, beside, metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         } else {
             let metric = PhantomData::<Open>;
-            let pairs = WallNeighbors { records, list, term, metric };
+            let pairs = WallNeighbors { records, list, term, beside, metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         }
     }

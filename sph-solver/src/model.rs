@@ -24,6 +24,8 @@ pub struct Model<const D: usize> {
     /// Lengths after which the axes repeat, from the lower corner of the domain on, m; none for an
     /// open axis.
     pub periods: [Option<f64>; D],
+    /// Lowest pressure of the fluid, Pa: where it would cavitate. −∞ for one that never does.
+    pub lowest_pressure: f64,
     /// What happens to a particle outside of the domain.
     pub on_lost: OnLost,
     /// The solids by number.

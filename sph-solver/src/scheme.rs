@@ -2,7 +2,7 @@
 
 use crate::groups::{BoxedSum, fluid_sum, wall_sum};
 use crate::kernel_shape::KernelShape;
-use crate::terms::{Acceleration, Deviation, PairTerm, Pressure, WallTerm};
+use crate::terms::{Acceleration, DensityRate, Deviation, PairTerm, Pressure, WallTerm};
 use sph_kernels::{Kernel, Real};
 use std::marker::PhantomData;
 
@@ -12,11 +12,11 @@ pub struct Scheme<const D: usize, S> {
     /// The kernel that the sums were compiled for.
     pub kernel: KernelShape,
     /// dρ/dt from fluid neighbours.
-    pub density: BoxedSum<D, S, f64>,
+    pub density: BoxedSum<D, S, DensityRate>,
     /// dv/dt from fluid neighbours.
     pub force: BoxedSum<D, S, Acceleration<D>>,
     /// dρ/dt from walls.
-    pub wall_density: Option<BoxedSum<D, S, f64>>,
+    pub wall_density: Option<BoxedSum<D, S, DensityRate>>,
     /// dv/dt from the pressure of walls.
     pub wall_force: Option<BoxedSum<D, S, Acceleration<D>>>,
     /// dv/dt from the friction of walls that do not let fluid slip.

@@ -113,7 +113,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         team: Team,
         model: Model<D>,
         scheme: Scheme<D, S>,
-        state: State<D>,
+        mut state: State<D>,
         elements: WallElements<D>,
         clock: Option<Clock>,
     ) -> Result<Self, RunError> {
@@ -125,6 +125,10 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             }
             None => Clock { step: 0, time: 0.0, dt: 0.0, extremes: start },
         };
+        if clock.step == 0 {
+            // As at rest: the pressure gradient carries the weight.
+            state.pressure_gradient = vec![model.gravity; state.len()];
+        }
         let skin = Skin::new(model.skin);
         Ok(Self {
             comm: Metered::new(comm),
@@ -403,7 +407,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             exchange,
             Copies { old: view.pressure, new: view.deviation },
             view.columns,
-            view.acceleration,
+            view.force_rate,
         )?;
         self.exposed += exposed;
         self.pending = self.pending.max(own.extremes);
@@ -449,7 +453,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
 
     /// Brings staged velocities to the full step, with the arithmetic of the force pass itself.
     fn complete(&self, mut staged: FullStep<D>, dt_before: f64) -> FullStep<D> {
-        for (v, Acceleration(a)) in staged.velocity.iter_mut().zip(&self.rank.acceleration) {
+        for (v, Acceleration(a)) in staged.velocity.iter_mut().zip(&self.rank.force_rate) {
             *v = kicked(*v, 0.5 * dt_before, *a, self.model.gravity);
         }
         staged

@@ -15,6 +15,8 @@ pub struct State<const D: usize> {
     pub position: Vec<[f64; D]>,
     /// Velocity, m/s; half a step behind or ahead of the positions, see [`crate::passes`].
     pub velocity: Vec<[f64; D]>,
+    /// ∇p/ρ as walls continue it, m/s². A new run fills it.
+    pub pressure_gradient: Vec<[f64; D]>,
 }
 
 impl<const D: usize> State<D> {
@@ -30,7 +32,14 @@ impl<const D: usize> State<D> {
 
     /// All columns, to sort, send and receive particles.
     pub fn columns(&mut self) -> impl Columns + '_ {
-        (&mut self.id, &mut self.mass, &mut self.density, &mut self.position, &mut self.velocity)
+        (
+            &mut self.id,
+            &mut self.mass,
+            &mut self.density,
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.pressure_gradient,
+        )
     }
 
     /// Keeps the particles named by `index`, in that order.
@@ -40,16 +49,16 @@ impl<const D: usize> State<D> {
 
     /// The columns themselves, ids first.
     pub fn into_columns(self) -> StateColumns<D> {
-        (self.id, self.mass, self.density, self.position, self.velocity)
+        (self.id, self.mass, self.density, self.position, self.velocity, self.pressure_gradient)
     }
 
     /// Back from [`into_columns`](Self::into_columns).
     pub fn from_columns(columns: StateColumns<D>) -> Self {
-        let (id, mass, density, position, velocity) = columns;
-        Self { id, mass, density, position, velocity }
+        let (id, mass, density, position, velocity, pressure_gradient) = columns;
+        Self { id, mass, density, position, velocity, pressure_gradient }
     }
 }
 
-/// Ids, masses, densities, positions, velocities.
+/// Ids, masses, densities, positions, velocities, pressure gradients.
 pub type StateColumns<const D: usize> =
-    (Vec<u64>, Vec<f64>, Vec<f64>, Vec<[f64; D]>, Vec<[f64; D]>);
+    (Vec<u64>, Vec<f64>, Vec<f64>, Vec<[f64; D]>, Vec<[f64; D]>, Vec<[f64; D]>);

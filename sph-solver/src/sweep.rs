@@ -9,22 +9,28 @@
 
 use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
 use crate::space::{Metric, PairScale};
-use crate::terms::{Pair, PairTerm, Quantity, Source, Target, WallPair, WallTerm, dot, lanes};
+use crate::terms::{
+    BesideWall, Pair, PairTerm, Quantity, Source, Target, WallPair, WallTerm, dot, lanes,
+};
 use sph_kernels::{Kernel, Lanes, Real, Vectorized};
 use sph_neighbors::{CLUSTER, ClusterList};
 use std::array::from_fn;
 use std::marker::PhantomData;
 use std::ops::Range;
 
+/// Stands for a pressure without limit: what it pulls with is still finite.
+const LOWEST: f64 = -1e30;
+
 /// A group of pairs: who the sources of every target are and what a pair contributes.
 pub trait Pairs<const D: usize, Q: Quantity, S: Real>: Copy + Sync {
     /// The sources of every cluster of targets.
     fn list(&self) -> &ClusterList;
 
-    /// Adds the contributions to the targets of a cluster.
+    /// Adds the contributions to the targets of a cluster, which are the targets `own` of the sweep.
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
         cluster: usize,
+        own: Range<usize>,
         position: &[L; D],
         target: &Target<D, L>,
         scale: &PairScale<D>,
@@ -45,16 +51,27 @@ pub struct Neighbors<'a, S, T, M> {
     pub metric: PhantomData<M>,
 }
 
+/// What wall terms are told of the targets of a sweep.
+#[derive(Debug, Clone, Copy)]
+pub struct Beside<'a, const D: usize> {
+    /// Lowest pressure of a wall towards each target, Pa.
+    pub lowest_pressure: &'a [f64],
+    /// ∇p/ρ at each target, m/s².
+    pub pressure_gradient: &'a [[f64; D]],
+}
+
 /// Elements of a wall: their records hold the normal in the words of velocity and the depth below
 /// the surface (m) in that of the quantity.
 #[derive(Debug, Clone, Copy)]
-pub struct WallNeighbors<'a, S, T, M> {
+pub struct WallNeighbors<'a, const D: usize, S, T, M> {
     /// Records that the list points into.
     pub records: &'a [Record<S>],
     /// A list per cluster of targets.
     pub list: &'a ClusterList,
     /// Term of this group.
     pub term: T,
+    /// The targets.
+    pub beside: Beside<'a, D>,
     /// How coordinates are subtracted.
     pub metric: PhantomData<M>,
 }
@@ -74,6 +91,7 @@ where
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
         cluster: usize,
+        _: Range<usize>,
         position: &[L; D],
         target: &Target<D, L>,
         scale: &PairScale<D>,
@@ -103,7 +121,7 @@ where
     }
 }
 
-impl<const D: usize, Q, S, T, M> Pairs<D, Q, S> for WallNeighbors<'_, S, T, M>
+impl<const D: usize, Q, S, T, M> Pairs<D, Q, S> for WallNeighbors<'_, D, S, T, M>
 where
     Q: Quantity,
     S: Real,
@@ -118,6 +136,7 @@ where
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
         cluster: usize,
+        own: Range<usize>,
         position: &[L; D],
         target: &Target<D, L>,
         scale: &PairScale<D>,
@@ -125,20 +144,30 @@ where
     ) {
         let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
         let to_q: L = lanes(scale.unit / scale.support_radius);
-        let Self { records, list, term, .. } = *self;
+        let Self { records, list, term, beside, .. } = *self;
+        let Beside { lowest_pressure, pressure_gradient } = beside;
+        let last = own.end - 1;
+        let of_lanes = |f: &dyn Fn(usize) -> f64| -> L {
+            let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f((own.start + l).min(last))));
+            L::load(&all)
+        };
+        let beside = BesideWall {
+            pressure_gradient: from_fn(|k| of_lanes(&|i| pressure_gradient[i][k])),
+            lowest_pressure: of_lanes(&|i| lowest_pressure[i].max(LOWEST)),
+        };
+        let mut total = T::zero();
         for &j in list.sources(cluster) {
             let record = &records[j as usize];
             let offset: [L; D] =
                 from_fn(|k| M::difference(position[k], L::splat(record[k]), scale, k));
-            let distance2 = dot(&offset, &offset);
-            let distance = distance2.sqrt();
-            let weight = K::slope_shape(distance * to_q) * L::splat(record[WEIGHT]);
             let normal: [L; D] = from_fn(|k| L::splat(record[velocity_word(k)]));
-            let height = dot(&offset, &normal);
+            let distance2 = dot(&offset, &offset);
+            let weight = K::slope_shape(distance2.sqrt() * to_q) * L::splat(record[WEIGHT]);
             let depth = L::splat(record[QUANTITY]);
-            let pair = WallPair { offset, normal, height, depth, weight, unit, per_unit };
-            term.add(target, &pair, sum);
+            let pair = WallPair { offset, distance2, normal, depth, weight, unit, per_unit };
+            term.add(target, &beside, &pair, &mut total);
         }
+        *sum = term.finish(target, &total);
     }
 }
 
@@ -238,7 +267,8 @@ where
         };
         let position: [L; D] = from_fn(|k| words[k]);
         let mut sum = Q::zero();
-        self.pairs.add::<K, L>(cluster, &position, &target, self.scale, &mut sum);
+        let targets = own.clone();
+        self.pairs.add::<K, L>(cluster, targets, &position, &target, self.scale, &mut sum);
         Q::rates(&sum, density, &mut self.rates[own]);
     }
 }

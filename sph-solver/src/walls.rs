@@ -1,15 +1,14 @@
 //! Walls at rest, as the fluid sees them.
 //!
-//! A wall is made of *elements*: places below the surface of a solid, each with its volume, the
-//! normal of the surface and its depth below it. They fill the support of the fluid beside the wall;
-//! what they do to it acts along their normal (see [`WallTerm`](crate::terms::WallTerm)). Elements
-//! travel when space is divided and rest in between. Every solid is a set of its own, so that a
-//! particle far from a solid has nothing to do with it, and the sum over a set is the load on its
+//! A wall is made of *elements*: the material in each cell of the lattice below the surface of a solid,
+//! with its volume, the normal of the surface and its depth below it. They fill the support of the
+//! fluid beside the wall (see [`WallTerm`](crate::terms::WallTerm)). Elements travel when space is divided and rest in between. Every solid is a set of its own, so that
+//! a particle far from a solid has nothing to do with it, and the sum over a set is the load on its
 //! solid.
 
 use crate::records::{Encoder, Record, record};
 use sph_decomp::Columns;
-use sph_geometry::{Domain, Lattice, LatticeError, Solid, wall_particles};
+use sph_geometry::{Domain, Lattice, LatticeError, Solid, wall_elements};
 use sph_kernels::Real;
 use sph_neighbors::{CellList, ClusterList, Grid};
 
@@ -26,7 +25,7 @@ pub struct WallElements<const D: usize> {
     pub depth: Vec<f64>,
     /// Position, m.
     pub position: Vec<[f64; D]>,
-    /// Unit vector out of the wall at the nearest point of its surface.
+    /// Unit vector out of the wall at the nearest point of its walls.
     pub normal: Vec<[f64; D]>,
 }
 
@@ -36,7 +35,7 @@ impl<const D: usize> WallElements<D> {
     ///
     /// # Errors
     ///
-    /// As [`wall_particles`].
+    /// As [`wall_elements`].
     pub fn of_solids(
         solids: &[Solid<D>],
         lattice: &Lattice<D>,
@@ -44,16 +43,14 @@ impl<const D: usize> WallElements<D> {
         domain: &Domain<D>,
         first_id: u64,
     ) -> Result<Self, LatticeError> {
-        let walls = wall_particles(solids, lattice, support_radius, domain)?;
-        let owner = |k: usize| &solids[walls.solids[k] as usize];
-        let all = 0..walls.positions.len();
+        let walls = wall_elements(solids, lattice, support_radius, domain)?;
         Ok(Self {
-            id: all.clone().map(|k| first_id + k as u64).collect(),
+            id: (0..walls.positions.len()).map(|k| first_id + k as u64).collect(),
             solid: walls.solids.iter().map(|&solid| solid as u16).collect(),
-            volume: vec![lattice.spacing().powi(D as i32); walls.positions.len()],
-            depth: all.clone().map(|k| owner(k).depth_in_solid(&walls.positions[k])).collect(),
-            normal: all.map(|k| owner(k).normal(&walls.positions[k])).collect(),
+            volume: walls.volumes,
+            depth: walls.depths,
             position: walls.positions,
+            normal: walls.normals,
         })
     }
 

@@ -5,6 +5,8 @@ use crate::model::Model;
 use crate::passes::Surroundings;
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, motion, record};
 use crate::scheme::Scheme;
+use crate::spray::{is_inside, is_spray};
+use crate::terms::DensityRate;
 use bytemuck::Pod;
 use sph_kernels::Real;
 use sph_neighbors::Clusters;
@@ -28,7 +30,7 @@ pub struct DensityPass<'a, const D: usize, S> {
 }
 
 impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
-    type Rate = f64;
+    type Rate = DensityRate;
     /// Pressure, weight, density deviation.
     type Message = [S; 3];
 
@@ -36,7 +38,7 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
         self.around.near_fluid.clusters()
     }
 
-    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, f64>) -> Loads {
+    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Loads {
         self.around.from_fluid(&*self.scheme.density, old, block);
         if let Some(sum) = &self.scheme.wall_density {
             self.around.from_walls(&**sum, old, block, |_, _, _| ());
@@ -44,16 +46,19 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
         Loads::NONE
     }
 
-    fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, f64>) -> Extremes {
+    fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Extremes {
         let (eos, encoder) = (&self.model.equation_of_state, &self.encoder);
         let density0 = eos.density0();
         let mut fault = 0.0;
         let old = &old[block.first..][..block.len()];
         for (k, old) in old.iter().enumerate() {
-            let mut density = block.density[k] + self.dt * block.rates[k];
-            if block.spray[k] && density < density0 {
+            let rate = &block.rates[k];
+            let mut density = block.density[k] + self.dt * rate.rate;
+            if is_spray(rate) && density < density0 {
                 density = density0;
             }
+            block.lowest_wall_pressure[k] =
+                if is_inside(rate) { self.model.lowest_pressure } else { 0.0 };
             // Written so that NaN is a fault too.
             if !(density > 0.0 && density < DENSEST * density0) {
                 fault = 1.0;
@@ -61,7 +66,7 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
             block.density[k] = density;
             block.new[k] = record(
                 motion(old),
-                S::from_f64(eos.pressure(density)),
+                S::from_f64(eos.pressure(density).max(self.model.lowest_pressure)),
                 encoder.weight(block.mass[k] / density),
             );
         }

@@ -36,6 +36,23 @@ pub fn kicked<const D: usize>(v: [f64; D], dt: f64, a: [f64; D], g: [f64; D]) ->
     std::array::from_fn(|k| v[k] + dt * (a[k] + g[k]))
 }
 
+/// Share of the newest step in the pressure gradient that walls continue.
+const NEWEST: f64 = 0.1;
+
+/// ∇p/ρ as walls continue it, m/s²: by Euler's equation the acceleration by pair forces with the sign
+/// turned, smoothed over some ten steps and limited to the magnitude of gravity. Smoothed and limited,
+/// because what impacts and sound do to single particles in single steps is no gradient of the flow.
+fn felt_gradient<const D: usize>(
+    before: &[f64; D],
+    acceleration: &[f64; D],
+    gravity: &[f64; D],
+) -> [f64; D] {
+    let smooth: [f64; D] =
+        std::array::from_fn(|k| before[k] - NEWEST * (acceleration[k] + before[k]));
+    let (length2, most2) = (square(smooth), square(*gravity));
+    if length2 > most2 { smooth.map(|g| g * (most2 / length2).sqrt()) } else { smooth }
+}
+
 impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
     /// Adds a part of the accelerations by walls, and of the loads on them.
     fn from_walls(
@@ -102,6 +119,7 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for ForcePass<'_, D, S> {
             let fault = f64::from(!(speed2 <= limit2 && acceleration2 < f64::MAX));
             let ways = Extremes::ways(&velocity);
             extremes = extremes.max(Extremes { speed2, acceleration2, fault, velocity: ways });
+            block.pressure_gradient[k] = felt_gradient(&block.pressure_gradient[k], &a, &gravity);
             block.velocity[k] = velocity;
             block.position[k] = position;
             block.new[k] = record(

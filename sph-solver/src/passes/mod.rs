@@ -24,6 +24,7 @@ use crate::block::Block;
 use crate::groups::{GroupSum, GroupView};
 use crate::records::Record;
 use crate::space::PairScale;
+use crate::sweep::Beside;
 use crate::terms::Rate;
 use crate::walls::WallSet;
 use sph_neighbors::ClusterList;
@@ -48,7 +49,7 @@ impl<const D: usize, S> Surroundings<'_, D, S> {
         block: &mut Block<'_, D, S, R>,
     ) {
         let list = self.near_fluid;
-        let view = GroupView { targets: old, sources: old, list, scale: self.scale };
+        let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
         if !sum.sum(view, block.first, block.density, block.rates) {
             block.rates.fill(R::default());
         }
@@ -67,7 +68,17 @@ impl<const D: usize, S> Surroundings<'_, D, S> {
         for wall in self.walls {
             own.resize(block.len(), R::default());
             let list = &wall.near;
-            let view = GroupView { targets: old, sources: &wall.records, list, scale: self.scale };
+            let beside = Beside {
+                lowest_pressure: block.lowest_wall_pressure,
+                pressure_gradient: block.pressure_gradient,
+            };
+            let view = GroupView {
+                targets: old,
+                sources: &wall.records,
+                list,
+                scale: self.scale,
+                beside: Some(beside),
+            };
             if !sum.sum(view, block.first, block.density, &mut own) {
                 continue;
             }

@@ -10,7 +10,7 @@ use crate::passes::{DENSEST, Surroundings};
 use crate::records::{Encoder, Record, record};
 use crate::space::PairScale;
 use crate::state::State;
-use crate::terms::Acceleration;
+use crate::terms::{Acceleration, DensityRate};
 use crate::walls::{WallElements, WallSet};
 use bytemuck::Pod;
 use sph_decomp::{Askew, Halo, HaloPlan, Orb, Parts};
@@ -36,12 +36,12 @@ pub struct Rank<const D: usize, S: Real> {
     pub near_fluid: ClusterList,
     /// Walls that the fluid of this rank can see, with their elements near it.
     pub walls: Vec<WallSet<D, S>>,
-    /// Which owned fluid particles are spray, see [`crate::spray`].
-    pub spray: Vec<bool>,
-    /// Acceleration of the owned fluid particles by pair forces (without gravity), m/s².
-    pub acceleration: Vec<Acceleration<D>>,
-    /// dρ/dt of the owned fluid particles, kg/m³/s.
-    pub density_rate: Vec<f64>,
+    /// Lowest pressure that a wall has towards each owned fluid particle, Pa: the density pass says.
+    lowest_wall_pressure: Vec<f64>,
+    /// Results of the force sweep.
+    pub(crate) force_rate: Vec<Acceleration<D>>,
+    /// Results of the density sweep.
+    density_rate: Vec<DensityRate>,
     /// Records with density deviations.
     deviation: Vec<Record<S>>,
     /// Records with pressures.
@@ -87,9 +87,9 @@ pub struct Passing<'a, const D: usize, S> {
     /// Records with pressures.
     pub pressure: &'a mut [Record<S>],
     /// Results of the density pass.
-    pub density_rate: &'a mut [f64],
+    pub density_rate: &'a mut [DensityRate],
     /// Results of the force pass.
-    pub acceleration: &'a mut [Acceleration<D>],
+    pub force_rate: &'a mut [Acceleration<D>],
     /// Buffers of the density pass.
     pub density_halo: &'a mut Halo<[S; 3]>,
     /// Buffers of the force pass.
@@ -127,12 +127,13 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
                 velocity: &mut self.state.velocity[..n],
                 density: &mut self.state.density[..n],
                 mass: &self.state.mass[..n],
-                spray: &self.spray,
+                pressure_gradient: &mut self.state.pressure_gradient[..n],
+                lowest_wall_pressure: &mut self.lowest_wall_pressure,
             },
             deviation: &mut self.deviation,
             pressure: &mut self.pressure,
             density_rate: &mut self.density_rate,
-            acceleration: &mut self.acceleration,
+            force_rate: &mut self.force_rate,
             density_halo: &mut self.density_halo,
             force_halo: &mut self.force_halo,
         }
@@ -143,7 +144,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         let fits = |v: &[f64; D]| v.iter().map(|c| c * c).sum::<f64>() <= speed_limit * speed_limit;
         let sound = |k: &usize| {
             let state = &self.state;
-            let Acceleration(a) = &self.acceleration[*k];
+            let Acceleration(a) = &self.force_rate[*k];
             let density = state.density[*k];
             fits(&state.velocity[*k])
                 && a.iter().all(|c| c.is_finite())
@@ -159,11 +160,11 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Bytes of particle data and lists on this rank.
     pub fn bytes(&self) -> usize {
         let record = size_of::<Record<S>>();
-        let column = 2 * size_of::<[f64; D]>() + 2 * 8 + 8;
+        let column = 3 * size_of::<[f64; D]>() + 3 * 8;
         self.state.len() * column
             + self.elements.bytes()
             + (self.deviation.len() + self.pressure.len()) * record
-            + self.acceleration.len() * (size_of::<[f64; D]>() + 8)
+            + self.force_rate.len() * (size_of::<[f64; D]>() + size_of::<DensityRate>() + 8)
             + self.near_fluid.bytes()
             + self.cells.as_ref().map_or(0, CellList::bytes)
             + self.walls.iter().map(WallSet::bytes).sum::<usize>()

@@ -7,10 +7,9 @@ use crate::error::RunError;
 use crate::model::Model;
 use crate::records::Encoder;
 use crate::space::wrapped;
-use crate::spray::mark_spray;
 use crate::state::State;
 use crate::team::Team;
-use crate::terms::Acceleration;
+use crate::terms::{Acceleration, DensityRate};
 use bytemuck::Pod;
 use sph_decomp::{
     Askew, Communicator, Halo, HaloPlan, MaxReach, Orb, Partition, Parts, Reach, Zone, ZoneOptions,
@@ -65,7 +64,6 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         if sorts {
             self.compactness = self.near_fluid.compactness();
         }
-        self.spray = mark_spray(model, &self.near_fluid, &self.walls);
         Ok(gone)
     }
 
@@ -178,8 +176,9 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.deviation.extend((0..outer.len()).map(|i| write(outer, i)));
         // The density pass writes every one of these before anybody reads them.
         self.pressure.resize(self.deviation.len(), [S::from_f64(0.0); 8]);
-        self.acceleration.resize(owned, Acceleration::default());
-        self.density_rate.resize(owned, 0.0);
+        self.force_rate.resize(owned, Acceleration::default());
+        self.density_rate.resize(owned, DensityRate::default());
+        self.lowest_wall_pressure.resize(owned, 0.0);
     }
 
     fn build_lists(&mut self, grid: &Grid<D>, reach: f64, outer: &State<D>) {

@@ -1,4 +1,4 @@
-//! An outer particle on its way: the whole state as plain words.
+//! An outer particle on its way: what its records are made of, as plain words.
 
 use crate::state::State;
 
@@ -46,6 +46,7 @@ mod tests {
             density: vec![-0.0],
             position: vec![[1.0, 2.0]],
             velocity: vec![[3.0, f64::MIN_POSITIVE]],
+            pressure_gradient: vec![],
         };
         let mut other = State::default();
         arrive(&depart(&state, 0), &mut other);

@@ -50,6 +50,7 @@ pub fn save<const D: usize>(
     let state = State::from_columns(columns);
     let checkpoint = Checkpoint::new(clock.time, clock.step, &state.id, &state.position)
         .with("velocity", &state.velocity)
+        .with("pressure_gradient", &state.pressure_gradient)
         .with("density", &state.density)
         .with("mass", &state.mass)
         .with_attribute("dt", clock.dt)
@@ -144,7 +145,8 @@ fn load_here<const D: usize>(
         mass: file.column::<f64>("mass")?[share.clone()].to_vec(),
         density: file.column::<f64>("density")?[share.clone()].to_vec(),
         position: file.positions[share.clone()].to_vec(),
-        velocity: file.column::<[f64; D]>("velocity")?[share].to_vec(),
+        velocity: file.column::<[f64; D]>("velocity")?[share.clone()].to_vec(),
+        pressure_gradient: file.column::<[f64; D]>("pressure_gradient")?[share].to_vec(),
     };
     let loads = attributes.f64_array("loads")?.to_vec();
     Ok(Loaded { state, clock, progress, loads })

@@ -172,6 +172,7 @@ fn model<const D: usize>(constants: &Constants<D>, solids: Vec<SolidModel<D>>) -
         limits: constants.step_limits(),
         domain: constants.domain,
         periods: constants.periods,
+        lowest_pressure: constants.cavitation_pressure.unwrap_or(f64::NEG_INFINITY),
         solids,
         on_lost: match constants.on_lost {
             scene::OnLost::Stop => OnLost::Stop,

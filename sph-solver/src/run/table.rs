@@ -128,7 +128,7 @@ fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) 
     if !features.walls {
         return builder.build();
     }
-    let wall = WallPressure { gravity: model.gravity, sound_speed };
+    let wall = WallPressure { sound_speed };
     let builder = builder.walls(WallContinuity, wall);
     match features.viscosity {
         Viscosity::Laminar(dynamic_viscosity) => {

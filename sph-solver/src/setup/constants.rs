@@ -33,6 +33,8 @@ pub struct Constants<const D: usize> {
     pub density_diffusion: f64,
     /// Dynamic viscosity μ of the fluid, Pa s, if it has one.
     pub viscosity: Option<f64>,
+    /// Lowest pressure of the fluid, Pa, if it cavitates.
+    pub cavitation_pressure: Option<f64>,
     /// Lowest and highest corner of the box that particles may be in, m.
     pub domain: ([f64; D], [f64; D]),
     /// Lengths after which the axes repeat, m; none for an open axis.
@@ -136,6 +138,7 @@ mod tests {
             artificial_viscosity: 0.02,
             density_diffusion: 0.1,
             viscosity: None,
+            cavitation_pressure: None,
             domain: ([0.0; 2], [1.0; 2]),
             periods: [None; 2],
             on_lost: OnLost::Stop,

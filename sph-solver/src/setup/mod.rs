@@ -102,6 +102,7 @@ impl<const D: usize> Setup<D> {
             artificial_viscosity: scene.artificial_viscosity(),
             density_diffusion: *numerics.density_diffusion,
             viscosity: scene.viscosity(),
+            cavitation_pressure: fluid.cavitation_pressure.map(|pressure| *pressure),
             domain: (domain.min, domain.max),
             periods: domain::periods(scene, &domain, spacing, Geometry::<D>::reach(scene))?,
             on_lost: numerics.on_lost,
@@ -109,7 +110,7 @@ impl<const D: usize> Setup<D> {
         let mass = density0 * spacing.powi(D as i32);
         let column = Column::new(density0, &gravity, spacing, &filling.position);
         let mut particles = filling.finish(scene, fluid, &equation_of_state, &column, mass)?;
-        walls::add_walls(scene, &solids, &lattice, &constants, mass, &mut particles)?;
+        walls::add_walls(scene, &solids, &lattice, &constants, &mut particles)?;
         Ok(Self {
             particles,
             constants,

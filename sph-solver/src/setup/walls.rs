@@ -6,7 +6,7 @@ use super::shapes::Shapes;
 use super::{LARGEST, MOST_PARTICLES, lattice_error, too_many};
 use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
-use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Solid, WallParticles, wall_particles};
+use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Solid, WallElements, wall_elements};
 
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
 const MOST_ROWS: f64 = 1e9;
@@ -66,12 +66,10 @@ pub fn add_walls<const D: usize>(
     solids: &[Solid<D>],
     lattice: &Lattice<D>,
     constants: &Constants<D>,
-    mass: f64,
     particles: &mut Particles<D>,
 ) -> Result<(), SceneError> {
     let bounds = Aabb::new(constants.domain.0, constants.domain.1);
     let walls = find_walls(scene, solids, lattice, &bounds, constants.support_radius)?;
-
     let total = particles.len() + walls.positions.len();
     if total as f64 > MOST_PARTICLES {
         return Err(too_many(scene, total as f64, LARGEST));
@@ -81,24 +79,24 @@ pub fn add_walls<const D: usize>(
     order.sort_by_key(|wall| walls.solids[*wall]);
     for wall in order {
         let kind = 1 + walls.solids[wall] as u16;
-        let (x, solid) = (walls.positions[wall], &solids[walls.solids[wall] as usize]);
-        particles.push(x, [0.0; D], constants.density0, mass, kind);
-        particles.normal.push(solid.normal(&x));
-        particles.depth.push(solid.depth_in_solid(&x));
+        particles.push(walls.positions[wall], [0.0; D], constants.density0, 0.0, kind);
+        particles.normal.push(walls.normals[wall]);
+        particles.volume.push(walls.volumes[wall]);
+        particles.depth.push(walls.depths[wall]);
     }
     Ok(())
 }
 
-/// The wall particles within `support` (m) of where fluid can be.
+/// The wall elements within `support` (m) of where fluid can be.
 pub fn find_walls<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
     lattice: &Lattice<D>,
     bounds: &Aabb<D>,
     support: f64,
-) -> Result<WallParticles<D>, SceneError> {
+) -> Result<WallElements<D>, SceneError> {
     if solids.is_empty() {
-        return Ok(WallParticles::default());
+        return Ok(WallElements::default());
     }
     let place = scene.domain.as_ref().map_or(scene.numerics.spacing.place, |domain| domain.place);
     let sides = (1..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
@@ -115,6 +113,6 @@ pub fn find_walls<const D: usize>(
         return Err(scene.error(place, kind));
     }
     let domain = Domain { bounds: *bounds, periodic: scene.periodic_axes() };
-    wall_particles(solids, lattice, support, &domain)
+    wall_elements(solids, lattice, support, &domain)
         .map_err(|error| lattice_error(scene, place, &error))
 }

@@ -10,7 +10,7 @@
 //! divides by what all pairs of a target share (see [`Quantity`]) once per target.
 //!
 //! Walls are another kind of neighbour: they know their normal n, and what a frictionless wall does
-//! lies along it, so a [`WallTerm`] adds to the sum by itself.
+//! lies along it, so a [`WallTerm`] has a sum of its own, see [`WallPush`].
 
 mod artificial_viscosity;
 mod continuity;
@@ -21,16 +21,18 @@ mod viscosity;
 mod wall_continuity;
 mod wall_friction;
 mod wall_pressure;
+mod wall_push;
 
 pub use artificial_viscosity::ArtificialViscosity;
 pub use continuity::Continuity;
 pub use delta_continuity::DeltaContinuity;
 pub use pressure::SymmetricPressure;
-pub use quantity::{Acceleration, Deviation, Pressure, Quantity, Rate};
+pub use quantity::{Acceleration, DensityRate, Deviation, Pressure, Quantity, Rate};
 pub use viscosity::LaminarViscosity;
 pub use wall_continuity::WallContinuity;
 pub use wall_friction::NoSlip;
 pub use wall_pressure::WallPressure;
+pub use wall_push::WallPush;
 
 use sph_kernels::{Lanes, Real};
 
@@ -74,16 +76,25 @@ pub struct Pair<const D: usize, L> {
     pub per_unit: L,
 }
 
+/// What a wall term knows of the target besides [`Target`].
+#[derive(Debug, Clone, Copy)]
+pub struct BesideWall<const D: usize, L> {
+    /// ∇p/ρ, the pressure gradient in the fluid over its density, m/s².
+    pub pressure_gradient: [L; D],
+    /// Lowest pressure that the wall may have towards the target, Pa.
+    pub lowest_pressure: L,
+}
+
 /// Geometry of a pair of a target and an element of a wall, lengths in units of the records unless
 /// said otherwise.
 #[derive(Debug, Clone, Copy)]
 pub struct WallPair<const D: usize, L> {
     /// r_iw = x_i − x_w, units.
     pub offset: [L; D],
+    /// |r_iw|², units².
+    pub distance2: L,
     /// n, unit vector out of the wall into the fluid.
     pub normal: [L; D],
-    /// n·r_iw, units.
-    pub height: L,
     /// Depth of the element below the surface of the wall, m.
     pub depth: L,
     /// w with ∇W_iw V_w = w r_iw, as in [`Pair`].
@@ -96,9 +107,24 @@ pub struct WallPair<const D: usize, L> {
 
 /// A contribution of the elements of a wall to a sweep whose targets carry `Q`.
 pub trait WallTerm<const D: usize, Q: Quantity>: Copy + Send + Sync {
-    /// Adds one pair a lane to the sum of the target. Must be finite for every pair, also for
-    /// `r_iw = 0` and for pairs beyond the support.
-    fn add<L: Lanes>(&self, i: &Target<D, L>, pair: &WallPair<D, L>, sum: &mut Q::Sum<D, L>);
+    /// What is summed over the elements.
+    type Total<L: Lanes>: Copy;
+
+    /// Nothing added yet.
+    fn zero<L: Lanes>() -> Self::Total<L>;
+
+    /// Adds one pair a lane. Must be finite for every pair, also for `r_iw = 0` and for pairs beyond
+    /// the support.
+    fn add<L: Lanes>(
+        &self,
+        i: &Target<D, L>,
+        beside: &BesideWall<D, L>,
+        pair: &WallPair<D, L>,
+        total: &mut Self::Total<L>,
+    );
+
+    /// What the total means for the target, see [`Quantity`].
+    fn finish<L: Lanes>(&self, i: &Target<D, L>, total: &Self::Total<L>) -> Q::Sum<D, L>;
 }
 
 /// A contribution of pairs to a sweep whose records carry `Q`.
@@ -222,18 +248,20 @@ pub(crate) mod scalar {
         slope: f64,
     ) -> (Target<2, f64>, WallPair<2, f64>) {
         let (i, _, pair) = pair(r_iw, (velocity, [0.0; 2]), (quantity, 0.0), volume, slope);
-        let Pair { offset, weight, unit, per_unit, .. } = pair;
-        let height = offset[0] * normal[0] + offset[1] * normal[1];
-        (i, WallPair { offset, normal, height, depth, weight, unit, per_unit })
+        let Pair { offset, distance2, weight, unit, per_unit, .. } = pair;
+        (i, WallPair { offset, distance2, normal, depth, weight, unit, per_unit })
     }
 
-    /// What a wall term adds to the rate of the target.
+    /// What a wall term adds to the rate of the target, where ∇p/ρ is `gradient`.
     pub fn wall_rate<Q: Quantity, T: WallTerm<2, Q>>(
         term: &T,
         (i, pair): &(Target<2, f64>, WallPair<2, f64>),
+        pressure_gradient: [f64; 2],
+        lowest_pressure: f64,
     ) -> Q::Rate<2> {
-        let mut sum = Q::zero();
-        term.add(i, pair, &mut sum);
+        let mut total = T::zero();
+        term.add(i, &BesideWall { pressure_gradient, lowest_pressure }, pair, &mut total);
+        let sum = term.finish(i, &total);
         let mut rates = [Q::Rate::default()];
         Q::rates(&sum, &[i.density], &mut rates);
         rates[0]

@@ -1,6 +1,6 @@
 //! What a sweep reads and returns.
 
-use super::Pair;
+use super::{Pair, lanes};
 use sph_kernels::{Lanes, Real};
 use sph_neighbors::CLUSTER;
 use std::ops::AddAssign;
@@ -8,7 +8,7 @@ use std::ops::AddAssign;
 /// What a group of pairs contributes to the change of a particle. Groups add up.
 pub trait Rate: Copy + Default + Send + Sync + AddAssign + 'static {}
 
-impl Rate for f64 {}
+impl Rate for DensityRate {}
 
 impl<const D: usize> Rate for Acceleration<D> {}
 
@@ -35,8 +35,8 @@ pub trait Quantity: Copy + Send + Sync + 'static {
 }
 
 /// Records carry the density deviation ρ − ρ0 (kg/m³). A term gives c, with
-/// `dρ_i/dt = ρ_i Σ_j c w`, where `w r_ij = ∇W_ij V_j` with r_ij in units. The sweep returns dρ/dt,
-/// kg/m³/s.
+/// `dρ_i/dt = ρ_i Σ_j c w`, where `w r_ij = ∇W_ij V_j` with r_ij in units. The sweep returns
+/// [`DensityRate`].
 #[derive(Debug, Clone, Copy)]
 pub struct Deviation;
 
@@ -44,6 +44,26 @@ pub struct Deviation;
 /// The sweep returns accelerations, m/s².
 #[derive(Debug, Clone, Copy)]
 pub struct Pressure;
+
+/// What the density sweep tells of a particle.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DensityRate {
+    /// dρ/dt, kg/m³/s.
+    pub rate: f64,
+    /// How much of the support the fluid fills, −Σ r_ij·∇W_ij V_j/D: 1 inside, ½ at a flat surface.
+    pub fluid: f64,
+    /// How much of it walls fill, counted in the same way.
+    pub wall: f64,
+}
+
+impl AddAssign for DensityRate {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        self.rate += other.rate;
+        self.fluid += other.fluid;
+        self.wall += other.wall;
+    }
+}
 
 /// dv/dt of a particle, m/s².
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,24 +85,27 @@ impl<const D: usize> Default for Acceleration<D> {
 }
 
 impl Quantity for Deviation {
-    type Rate<const D: usize> = f64;
-    type Sum<const D: usize, L: Lanes> = L;
+    type Rate<const D: usize> = DensityRate;
+    /// Σ c w, and the shares of the support that fluid and walls fill.
+    type Sum<const D: usize, L: Lanes> = [L; 3];
 
     #[inline(always)]
-    fn zero<const D: usize, L: Lanes>() -> L {
-        L::zero()
+    fn zero<const D: usize, L: Lanes>() -> [L; 3] {
+        [L::zero(); 3]
     }
 
     #[inline(always)]
-    fn add<const D: usize, L: Lanes>(sum: &mut L, coefficient: L, pair: &Pair<D, L>) {
-        *sum = coefficient.mul_add(pair.weight, *sum);
+    fn add<const D: usize, L: Lanes>(sum: &mut [L; 3], coefficient: L, pair: &Pair<D, L>) {
+        sum[0] = coefficient.mul_add(pair.weight, sum[0]);
+        let metres = pair.unit * lanes(-1.0 / D as f64);
+        sum[1] = (pair.distance2 * metres).mul_add(pair.weight, sum[1]);
     }
 
     #[inline(always)]
-    fn rates<const D: usize, L: Lanes>(sum: &L, density: &[f64], rates: &mut [f64]) {
-        let sum = numbers(*sum);
-        for ((rate, sum), density) in rates.iter_mut().zip(sum).zip(density) {
-            *rate = sum * density;
+    fn rates<const D: usize, L: Lanes>(sum: &[L; 3], density: &[f64], rates: &mut [DensityRate]) {
+        let [flux, fluid, wall] = sum.map(numbers);
+        for (l, (rate, density)) in rates.iter_mut().zip(density).enumerate() {
+            *rate = DensityRate { rate: flux[l] * density, fluid: fluid[l], wall: wall[l] };
         }
     }
 }

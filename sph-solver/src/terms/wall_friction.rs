@@ -1,4 +1,4 @@
-use super::{Pressure, Target, WallPair, WallTerm, lanes};
+use super::{BesideWall, Pressure, Target, WallPair, WallTerm, dot, lanes};
 use sph_kernels::Lanes;
 
 /// Friction of a wall at rest that does not let the fluid slip:
@@ -18,22 +18,37 @@ pub struct NoSlip {
 }
 
 impl<const D: usize> WallTerm<D, Pressure> for NoSlip {
+    type Total<L: Lanes> = [L; D];
+
     #[inline(always)]
-    fn add<L: Lanes>(&self, i: &Target<D, L>, pair: &WallPair<D, L>, sum: &mut [L; D]) {
-        let below = pair.height * pair.unit;
+    fn zero<L: Lanes>() -> [L; D] {
+        [L::zero(); D]
+    }
+
+    #[inline(always)]
+    fn add<L: Lanes>(
+        &self,
+        i: &Target<D, L>,
+        _: &BesideWall<D, L>,
+        pair: &WallPair<D, L>,
+        sum: &mut [L; D],
+    ) {
+        let below = dot(&pair.offset, &pair.normal) * pair.unit;
         let distance = (below - pair.depth).max(lanes(self.smallest_distance));
         let stretch = (distance + pair.depth).div(distance);
         // F V = w per unit of length.
         let factor =
             lanes::<L>(2.0 * self.dynamic_viscosity) * pair.weight * pair.per_unit * stretch;
-        let mut along = L::zero();
-        for k in 0..D {
-            along = i.velocity[k].mul_add(pair.normal[k], along);
-        }
+        let along = dot(&i.velocity, &pair.normal);
         for k in 0..D {
             let tangential = i.velocity[k] - along * pair.normal[k];
             sum[k] = factor.mul_add(tangential, sum[k]);
         }
+    }
+
+    #[inline(always)]
+    fn finish<L: Lanes>(&self, _: &Target<D, L>, total: &[L; D]) -> [L; D] {
+        *total
     }
 }
 
@@ -63,15 +78,10 @@ mod tests {
                 if yj > 0.0 {
                     fluid += 2.0 * (y - yj) * slope * dp * dp / 1000.0;
                 } else {
-                    let pair = scalar::wall(
-                        [-dx, y - yj],
-                        [0.0, 1.0],
-                        -yj,
-                        ([y, 0.0], 0.0),
-                        dp * dp,
-                        slope,
-                    );
-                    let Acceleration(rate) = scalar::wall_rate::<Pressure, _>(&term, &pair);
+                    let (r, state) = ([-dx, y - yj], ([y, 0.0], 0.0));
+                    let pair = scalar::wall(r, [0.0, 1.0], -yj, state, dp * dp, slope);
+                    let Acceleration(rate) =
+                        scalar::wall_rate::<Pressure, _>(&term, &pair, [0.0; 2], 0.0);
                     assert_eq!(rate[1], 0.0);
                     wall += rate[0];
                 }

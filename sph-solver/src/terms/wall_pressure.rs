@@ -1,36 +1,53 @@
-use super::{Pressure, Target, WallPair, WallTerm, dot, lanes};
+use super::{BesideWall, Pressure, Target, WallPair, WallPush, WallTerm, dot, lanes};
 use sph_kernels::Lanes;
 
 /// Pressure of a wall at rest by a one-sided Riemann problem along its normal n:
-/// dv_i/dt = −(1/ρ_i) Σ_w 2 p*_iw (n·∇W_iw) n V_w with
-/// 2 p* = max(0, 2 p_i + ρ_i g·(x_w − x_i)) + 2 ρ_i u min(6 u, c0), u = max(0, −n·v_i).
+/// dv_i/dt = −(1/ρ_i) Σ_w 2 p*_iw ∇W_iw V_w, the sum as [`WallPush`] leaves it, with
+/// 2 p* = max(2 p_low, 2 p_i − ρ_i G·r_iw) + 2 ρ_i u min(6 u, c0), u = max(0, −n·v_i).
 ///
-/// The wall state is the mirrored one of Zhang, Hu & Adams (2017), J. Comput. Phys. 335, eq. 22–24
-/// (hydrostatic pressure, reversed normal velocity) and the dissipation their low-dissipation
-/// limiter, eq. 17 with η = 3. Both the force and the velocity that it sees lie along the normal, so a
-/// wall takes no momentum from what flows along it.
+/// G = ∇p/ρ is the pressure gradient that the fluid felt lately, gravity less acceleration by Euler's
+/// equation, so that a wall carries the water that rests on it and neither carries nor drags the water
+/// that runs down along it. The mirrored state is that of Zhang, Hu & Adams (2017), J. Comput. Phys.
+/// 335, eq. 22–24, and the dissipation their low-dissipation limiter, eq. 17 with η = 3; velocity and
+/// dissipation lie along the normal, so a plane takes no momentum from what flows along it. Near a free
+/// surface p_low is 0 and a wall never sucks, as in Adami, Hu & Adams (2012); elsewhere it is the
+/// pressure at which the fluid cavitates.
 #[derive(Debug, Clone, Copy)]
-pub struct WallPressure<const D: usize> {
-    /// Gravity, m/s².
-    pub gravity: [f64; D],
+pub struct WallPressure {
     /// c0, m/s. With 0 there is no dissipation.
     pub sound_speed: f64,
 }
 
-impl<const D: usize> WallTerm<D, Pressure> for WallPressure<D> {
+impl<const D: usize> WallTerm<D, Pressure> for WallPressure {
+    type Total<L: Lanes> = WallPush<D, L>;
+
     #[inline(always)]
-    fn add<L: Lanes>(&self, i: &Target<D, L>, pair: &WallPair<D, L>, sum: &mut [L; D]) {
-        // g·(x_w − x_i) = −g·r_iw.
-        let weight: [L; D] = self.gravity.map(|g| lanes::<L>(g) * pair.unit * i.density);
-        let hydrostatic = dot(&weight, &pair.offset);
-        let pressures = (i.quantity + i.quantity - hydrostatic).max(L::zero());
+    fn zero<L: Lanes>() -> WallPush<D, L> {
+        WallPush::zero()
+    }
+
+    #[inline(always)]
+    fn add<L: Lanes>(
+        &self,
+        i: &Target<D, L>,
+        beside: &BesideWall<D, L>,
+        pair: &WallPair<D, L>,
+        total: &mut WallPush<D, L>,
+    ) {
+        let gradient = beside.pressure_gradient.map(|g| g * (i.density * pair.unit));
+        let change = -dot(&gradient, &pair.offset);
+        let (mirrored, lowest) = (i.quantity + i.quantity, beside.lowest_pressure);
+        let pressures = (mirrored + change).max(lowest + lowest);
         let speed = (-dot(&i.velocity, &pair.normal)).max(L::zero());
         let limited = (speed * lanes(6.0)).min(lanes(self.sound_speed));
         let dissipation = (speed + speed) * i.density * limited;
-        let factor = (-pressures - dissipation) * (pair.weight * pair.height);
-        for (sum, n) in sum.iter_mut().zip(pair.normal) {
-            *sum = factor.mul_add(n, *sum);
-        }
+        let even = pressures - change + dissipation;
+        total.add(-even, -change, pair);
+    }
+
+    #[inline(always)]
+    fn finish<L: Lanes>(&self, _: &Target<D, L>, total: &WallPush<D, L>) -> [L; D] {
+        total.felt()
     }
 }
 
@@ -39,36 +56,47 @@ mod tests {
     use super::*;
     use crate::terms::scalar;
 
-    const WALL: WallPressure<2> = WallPressure { gravity: [0.0, -9.81], sound_speed: 20.0 };
+    const WALL: WallPressure = WallPressure { sound_speed: 20.0 };
 
     /// Fluid 0.1 m above a wall particle.
-    fn push(pressure: f64, velocity: [f64; 2]) -> [f64; 2] {
+    fn push(pressure: f64, velocity: [f64; 2], gradient: [f64; 2], lowest: f64) -> [f64; 2] {
         let state = (velocity, pressure);
         let pair = scalar::wall([0.04, 0.1], [0.0, 1.0], 0.05, state, 0.01, -50.0);
-        scalar::wall_rate::<Pressure, _>(&WALL, &pair).0
+        scalar::wall_rate::<Pressure, _>(&WALL, &pair, gradient, lowest).0
     }
 
     #[test]
-    fn hydrostatic_pressure_is_mirrored() {
+    fn pressure_is_continued_with_its_gradient() {
         let expected = (2.0 * 500.0 + 1000.0 * 9.81 * 0.1) * 50.0 * 0.01 * 0.1 / 1000.0;
-        assert!((push(500.0, [0.0; 2])[1] - expected).abs() < 1e-12);
+        assert!((push(500.0, [0.0; 2], [0.0, -9.81], 0.0)[1] - expected).abs() < 1e-12);
     }
 
     #[test]
     fn a_slide_is_not_felt() {
-        assert_eq!(push(500.0, [3.0, 0.0]), push(500.0, [0.0; 2]));
-        assert_eq!(push(500.0, [3.0, -1.0])[0], 0.0);
+        let still = push(500.0, [0.0; 2], [0.0; 2], 0.0);
+        assert_eq!(push(500.0, [3.0, 0.0], [0.0; 2], 0.0), still);
+        assert!(push(500.0, [3.0, -1.0], [0.0; 2], 0.0)[0].abs() < 1e-14);
     }
 
     #[test]
     fn an_approach_is_stopped_harder_than_a_departure() {
-        assert!(push(0.0, [0.0, -1.0])[1] > push(0.0, [0.0; 2])[1]);
-        assert_eq!(push(0.0, [0.0, 1.0]), push(0.0, [0.0; 2]));
+        let at = |v: f64| push(0.0, [0.0, v], [0.0; 2], 0.0)[1];
+        assert!(at(-1.0) > at(0.0));
+        assert_eq!(at(1.0), at(0.0));
+    }
+
+    #[test]
+    fn suction_ends_at_the_lowest_pressure() {
+        let at = |lowest| push(-1e5, [0.0; 2], [0.0; 2], lowest)[1];
+        assert_eq!(at(0.0), 0.0);
+        let factor = 2.0 * 50.0 * 0.01 * 0.1 / 1000.0;
+        assert!((at(-3e4) + 3e4 * factor).abs() < 1e-9);
+        assert!((at(-1e9) + 1e5 * factor).abs() < 1e-9);
     }
 
     #[test]
     fn coincident_particles_do_not_push() {
         let pair = scalar::wall([0.0; 2], [0.0, 1.0], 0.05, ([1.0; 2], 7.0), 0.01, -50.0);
-        assert_eq!(scalar::wall_rate::<Pressure, _>(&WALL, &pair).0, [0.0; 2]);
+        assert_eq!(scalar::wall_rate::<Pressure, _>(&WALL, &pair, [0.0; 2], 0.0).0, [0.0; 2]);
     }
 }

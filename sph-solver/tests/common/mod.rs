@@ -52,6 +52,7 @@ impl<const D: usize> Case<D> {
             },
             domain: ([-4.0 * dp; D], self.tank.map(|n| f64::from(n + 4) * dp)),
             periods: [None; D],
+            lowest_pressure: f64::NEG_INFINITY,
             on_lost: OnLost::Stop,
             solids: vec![SolidModel { name: "tank".into(), center: [0.0; D], slips: true }],
         }
@@ -66,7 +67,7 @@ impl<const D: usize> Case<D> {
         };
         let friction =
             ArtificialViscosity { strength: 0.02 * h * c0 * 1000.0, softening: 0.01 * h * h };
-        let wall = WallPressure { gravity: model.gravity, sound_speed: c0 };
+        let wall = WallPressure { sound_speed: c0 };
         Scheme::new::<WendlandC2>(density, (SymmetricPressure, friction))
             .walls(WallContinuity, wall)
             .build()

@@ -130,6 +130,15 @@ fn fluid(values: &Values<'_>, name: &str, fluid: &At<Fluid>) -> Result<(), Scene
             ));
         }
     }
+    if let Some(pressure) = &fluid.cavitation_pressure {
+        values.within(
+            &format!("{path}.cavitation_pressure"),
+            pressure,
+            f64::MIN..=0.0,
+            "at most 0",
+            "pressures are relative to that of the air: water cavitates at about -100000 Pa",
+        )?;
+    }
     if fluid.regions.is_empty() {
         let kind = ErrorKind::Nothing {
             why: format!("fluid `{name}` has no regions"),
