@@ -37,10 +37,10 @@ pub fn kicked<const D: usize>(v: [f64; D], dt: f64, a: [f64; D], g: [f64; D]) ->
 }
 
 /// Share of the newest step in the pressure gradient that walls continue.
-const NEWEST: f64 = 0.1;
+const NEWEST: f64 = 0.02;
 
 /// ∇p/ρ as walls continue it, m/s²: by Euler's equation the acceleration by pair forces with the sign
-/// turned, smoothed over some ten steps and limited to the magnitude of gravity. Smoothed and limited,
+/// turned, smoothed over some fifty steps and limited to the magnitude of gravity. Smoothed and limited,
 /// because what impacts and sound do to single particles in single steps is no gradient of the flow.
 fn felt_gradient<const D: usize>(
     before: &[f64; D],
