@@ -66,6 +66,7 @@ impl DamBreak {
             domain: ([-margin; 3], [BOX[0] + margin, BOX[1] + margin, 3.0 * BOX[2]]),
             periods: [None; 3],
             lowest_pressure: f64::NEG_INFINITY,
+            closed: false,
             on_lost: OnLost::Remove,
             solids: vec![SolidModel { name: "box".into(), center: [0.0; 3], slips: true }],
         }

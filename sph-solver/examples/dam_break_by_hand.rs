@@ -36,6 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         domain: ([-0.5, -0.5], [4.5, 3.5]),
         periods: [None; 2],
         lowest_pressure: f64::NEG_INFINITY,
+        closed: false,
         on_lost: OnLost::Stop,
         solids: vec![SolidModel { name: "tank".into(), center: [0.0; 2], slips: true }],
     };

@@ -18,13 +18,22 @@ pub struct FluidColumns<'a, const D: usize> {
     pub pressure_gradient: &'a mut [[f64; D]],
     /// Lowest pressures that a wall has towards them, Pa.
     pub lowest_wall_pressure: &'a mut [f64],
+    /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
+    pub shift: &'a mut [[f64; D]],
 }
 
 impl<'a, const D: usize> FluidColumns<'a, D> {
     /// The block of all owned fluid particles.
     pub fn block<S, R>(self, rates: &'a mut [R], new: &'a mut [Record<S>]) -> Block<'a, D, S, R> {
-        let Self { position, velocity, density, mass, pressure_gradient, lowest_wall_pressure } =
-            self;
+        let Self {
+            position,
+            velocity,
+            density,
+            mass,
+            pressure_gradient,
+            lowest_wall_pressure,
+            shift,
+        } = self;
         Block {
             first: 0,
             position,
@@ -33,6 +42,7 @@ impl<'a, const D: usize> FluidColumns<'a, D> {
             mass,
             pressure_gradient,
             lowest_wall_pressure,
+            shift,
             rates,
             new,
         }
@@ -56,6 +66,8 @@ pub struct Block<'a, const D: usize, S, R> {
     pub pressure_gradient: &'a mut [[f64; D]],
     /// Lowest pressures that a wall has towards them, Pa.
     pub lowest_wall_pressure: &'a mut [f64],
+    /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
+    pub shift: &'a mut [[f64; D]],
     /// Results of the flux loop.
     pub rates: &'a mut [R],
     /// Records that the next pass reads.
@@ -81,6 +93,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
         let (mass, mass2) = self.mass.split_at(n);
         let (gradient, gradient2) = self.pressure_gradient.split_at_mut(n);
         let (lowest, lowest2) = self.lowest_wall_pressure.split_at_mut(n);
+        let (shift, shift2) = self.shift.split_at_mut(n.min(self.shift.len()));
         let (rates, rates2) = self.rates.split_at_mut(n);
         let (new, new2) = self.new.split_at_mut(n);
         (
@@ -92,6 +105,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 mass,
                 pressure_gradient: gradient,
                 lowest_wall_pressure: lowest,
+                shift,
                 rates,
                 new,
             },
@@ -103,6 +117,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 mass: mass2,
                 pressure_gradient: gradient2,
                 lowest_wall_pressure: lowest2,
+                shift: shift2,
                 rates: rates2,
                 new: new2,
             },
@@ -128,6 +143,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             mass: self.mass,
             pressure_gradient: self.pressure_gradient,
             lowest_wall_pressure: self.lowest_wall_pressure,
+            shift: self.shift,
             rates: self.rates,
             new: self.new,
         }
@@ -167,6 +183,7 @@ mod tests {
             mass: &m,
             pressure_gradient: &mut [[0.0; 2]; 10],
             lowest_wall_pressure: &mut [0.0; 10],
+            shift: &mut [],
             rates: &mut r,
             new: &mut new,
         };

@@ -26,6 +26,8 @@ pub struct Model<const D: usize> {
     pub periods: [Option<f64>; D],
     /// Lowest pressure of the fluid, Pa: where it would cavitate. −∞ for one that never does.
     pub lowest_pressure: f64,
+    /// Whether the fluid fills all the space that it can be in, so that it has no free surface.
+    pub closed: bool,
     /// What happens to a particle outside of the domain.
     pub on_lost: OnLost,
     /// The solids by number.

@@ -2,7 +2,9 @@
 
 use crate::groups::{BoxedSum, fluid_sum, wall_sum};
 use crate::kernel_shape::KernelShape;
-use crate::terms::{Acceleration, DensityRate, Deviation, PairTerm, Pressure, WallTerm};
+use crate::terms::{
+    Acceleration, Crowding, DensityRate, Deviation, PairTerm, Pressure, VectorSum, WallTerm,
+};
 use sph_kernels::{Kernel, Real};
 use std::marker::PhantomData;
 
@@ -21,6 +23,10 @@ pub struct Scheme<const D: usize, S> {
     pub wall_force: Option<BoxedSum<D, S, Acceleration<D>>>,
     /// dv/dt from the friction of walls that do not let fluid slip.
     pub wall_friction: Option<BoxedSum<D, S, Acceleration<D>>>,
+    /// How crowded the fluid is around a particle, if particles are shifted.
+    pub shifting: Option<BoxedSum<D, S, VectorSum<D>>>,
+    /// The same for the walls around it.
+    pub wall_shifting: Option<BoxedSum<D, S, VectorSum<D>>>,
 }
 
 impl<const D: usize, S: Real> Scheme<D, S> {
@@ -37,6 +43,8 @@ impl<const D: usize, S: Real> Scheme<D, S> {
                 wall_density: None,
                 wall_force: None,
                 wall_friction: None,
+                shifting: None,
+                wall_shifting: None,
             },
             kernel: PhantomData,
         }
@@ -72,6 +80,20 @@ impl<const D: usize, S: Real, K: Kernel> SchemeBuilder<D, S, K> {
     #[must_use]
     pub fn friction(mut self, friction: impl WallTerm<D, Pressure> + 'static) -> Self {
         self.scheme.wall_friction = Some(wall_sum::<D, S, Pressure, K, _>(friction));
+        self
+    }
+
+    /// Particles that are shifted to where there are too few of them.
+    #[must_use]
+    pub fn shifting(mut self, crowding: impl PairTerm<D, Crowding> + 'static) -> Self {
+        self.scheme.shifting = Some(fluid_sum::<D, S, Crowding, K, _>(crowding));
+        self
+    }
+
+    /// The part of walls in that.
+    #[must_use]
+    pub fn wall_shifting(mut self, crowding: impl WallTerm<D, Crowding> + 'static) -> Self {
+        self.scheme.wall_shifting = Some(wall_sum::<D, S, Crowding, K, _>(crowding));
         self
     }
 

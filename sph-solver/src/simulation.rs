@@ -329,6 +329,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         let encoder = self.encoder();
         let (comm, team, model) = (&self.comm, &self.team, &self.model);
         let gone = self.rank.rebuild(comm, team, model, &encoder, division)?;
+        self.rank.make_room(self.scheme.shifting.is_some());
         self.at_rebuild = (self.counters.steps, self.exposed);
         Ok(gone)
     }
@@ -364,6 +365,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             encoder,
             model: &self.model,
             dt: self.clock.dt,
+            speed: self.clock.extremes.speed2.sqrt(),
         };
         let exchange = Exchange {
             comm: &self.comm,
@@ -419,7 +421,12 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
     /// one step old, so that their reduction could hide behind the density pass.
     fn choose_step(&mut self, extremes: Extremes) -> Result<f64, RunError> {
         let acceleration = extremes.acceleration2.sqrt();
-        self.skin.moved(self.clock.dt, &extremes);
+        // A shift is at most half of the largest speed, of the step before.
+        let moves = match self.scheme.shifting {
+            Some(_) => Extremes { speed2: 2.5 * extremes.speed2, ..extremes },
+            None => extremes,
+        };
+        self.skin.moved(self.clock.dt, &moves);
         let dt = self.model.limits.step(extremes);
         let calm = self.model.limits.step(Extremes::NONE);
         if dt.is_nan() || dt <= SMALLEST_STEP * calm {
@@ -433,7 +440,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         // The kick before the coming drift is not known yet; twice the last one bounds it but in
         // an impact, where a stale step is counted and harmless: the kernel's slope vanishes at R.
         let kick = acceleration * (self.clock.dt + dt);
-        self.lists_due = self.skin.would_exceed(dt, &extremes, kick);
+        self.lists_due = self.skin.would_exceed(dt, &moves, kick);
         Ok(dt)
     }
 

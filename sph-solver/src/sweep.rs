@@ -10,7 +10,8 @@
 use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
 use crate::space::{Metric, PairScale};
 use crate::terms::{
-    BesideWall, Pair, PairTerm, Quantity, Source, Target, WallPair, WallTerm, dot, lanes,
+    BesideWall, Pair, PairTerm, Quantity, Source, Target, WallPair, WallTerm, difference, dot,
+    lanes,
 };
 use sph_kernels::{Kernel, Lanes, Real, Vectorized};
 use sph_neighbors::{CLUSTER, ClusterList};
@@ -116,7 +117,13 @@ where
                 velocity: from_fn(|k| L::splat(record[velocity_word(k)])),
             };
             let pair = Pair { offset, distance2, distance, weight, unit, per_unit };
-            Q::add(sum, terms.coefficient(target, &source, &pair), &pair);
+            if T::CENTRAL {
+                Q::add(sum, terms.coefficient(target, &source, &pair), &pair);
+            }
+            if T::SHEARS {
+                let velocity = difference(&target.velocity, &source.velocity);
+                Q::add_shear(sum, terms.shear(target, &source, &pair), &velocity, &pair);
+            }
         }
     }
 }

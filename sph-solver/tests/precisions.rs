@@ -85,10 +85,11 @@ fn error<S: Real + bytemuck::Pod>(seed: u64) -> f64 {
         domain: ([-0.2; 2], [1.2; 2]),
         periods: [None; 2],
         lowest_pressure: f64::NEG_INFINITY,
+        closed: true,
         on_lost: OnLost::Stop,
         solids: vec![SolidModel { name: "box".into(), center: [0.5; 2], slips: true }],
     };
-    let friction = LaminarViscosity { dynamic_viscosity: VISCOSITY, softening: 0.01 * h * h };
+    let friction = LaminarViscosity { dynamic_viscosity: VISCOSITY };
     let density =
         DeltaContinuity { strength: 0.1 * h * sound_speed, hydrostatic_gradient: [0.0; 2] };
     let wall = WallPressure { sound_speed };

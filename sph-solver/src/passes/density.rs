@@ -6,7 +6,7 @@ use crate::passes::Surroundings;
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, motion, record};
 use crate::scheme::Scheme;
 use crate::spray::{is_inside, is_spray};
-use crate::terms::DensityRate;
+use crate::terms::{DensityRate, shift};
 use bytemuck::Pod;
 use sph_kernels::Real;
 use sph_neighbors::Clusters;
@@ -27,6 +27,8 @@ pub struct DensityPass<'a, const D: usize, S> {
     pub model: &'a Model<D>,
     /// Step from the old density to the new one, s.
     pub dt: f64,
+    /// Largest speed of the flow, m/s.
+    pub speed: f64,
 }
 
 impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
@@ -42,6 +44,9 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
         self.around.from_fluid(&*self.scheme.density, old, block);
         if let Some(sum) = &self.scheme.wall_density {
             self.around.from_walls(&**sum, old, block, |_, _, _| ());
+        }
+        if let Some(sum) = &self.scheme.shifting {
+            self.around.crowding(&**sum, self.scheme.wall_shifting.as_deref(), old, block);
         }
         Loads::NONE
     }
@@ -62,6 +67,12 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
             // Written so that NaN is a fault too.
             if !(density > 0.0 && density < DENSEST * density0) {
                 fault = 1.0;
+            }
+            if let Some(crowding) = block.shift.get_mut(k) {
+                let radius = self.model.support_radius;
+                // Where there is no free surface, a gap is one that is to be closed.
+                let filled = if self.model.closed { 1.0 } else { rate.fluid + rate.wall };
+                *crowding = shift(crowding, filled, radius, self.speed);
             }
             block.density[k] = density;
             block.new[k] = record(

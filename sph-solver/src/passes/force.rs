@@ -111,13 +111,17 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for ForcePass<'_, D, S> {
             let Acceleration(a) = block.rates[k];
             let now = kicked(block.velocity[k], 0.5 * self.dt_before, a, gravity);
             let velocity = kicked(now, 0.5 * self.dt, a, gravity);
+            let drift = match block.shift.get(k) {
+                Some(shift) => std::array::from_fn(|d| velocity[d] + shift[d]),
+                None => velocity,
+            };
             let position: [f64; D] =
-                std::array::from_fn(|d| block.position[k][d] + self.dt * velocity[d]);
+                std::array::from_fn(|d| block.position[k][d] + self.dt * drift[d]);
             let speed2 = square(velocity);
             let acceleration2 = square::<D>(std::array::from_fn(|d| a[d] + gravity[d]));
             // Written so that NaN is a fault too: `max` alone would drop it.
             let fault = f64::from(!(speed2 <= limit2 && acceleration2 < f64::MAX));
-            let ways = Extremes::ways(&velocity);
+            let ways = Extremes::ways(&drift);
             extremes = extremes.max(Extremes { speed2, acceleration2, fault, velocity: ways });
             block.pressure_gradient[k] = felt_gradient(&block.pressure_gradient[k], &a, &gravity);
             block.velocity[k] = velocity;

@@ -25,7 +25,7 @@ use crate::groups::{GroupSum, GroupView};
 use crate::records::Record;
 use crate::space::PairScale;
 use crate::sweep::Beside;
-use crate::terms::Rate;
+use crate::terms::{DensityRate, Rate, VectorSum};
 use crate::walls::WallSet;
 use sph_neighbors::ClusterList;
 
@@ -52,6 +52,41 @@ impl<const D: usize, S> Surroundings<'_, D, S> {
         let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
         if !sum.sum(view, block.first, block.density, block.rates) {
             block.rates.fill(R::default());
+        }
+    }
+
+    /// Sets the shifts of a block to the sums of how crowded fluid and walls are.
+    fn crowding(
+        &self,
+        fluid: &dyn GroupSum<D, S, VectorSum<D>>,
+        wall: Option<&dyn GroupSum<D, S, VectorSum<D>>>,
+        old: &[Record<S>],
+        block: &mut Block<'_, D, S, DensityRate>,
+    ) {
+        let mut sums = vec![VectorSum::default(); block.len()];
+        let mut own = sums.clone();
+        let list = self.near_fluid;
+        let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
+        fluid.sum(view, block.first, block.density, &mut sums);
+        for set in self.walls {
+            let Some(wall) = wall else { break };
+            let beside = Beside {
+                lowest_pressure: block.lowest_wall_pressure,
+                pressure_gradient: block.pressure_gradient,
+            };
+            let view = GroupView {
+                targets: old,
+                sources: &set.records,
+                list: &set.near,
+                scale: self.scale,
+                beside: Some(beside),
+            };
+            if wall.sum(view, block.first, block.density, &mut own) {
+                sums.iter_mut().zip(&own).for_each(|(sum, own)| *sum += *own);
+            }
+        }
+        for (shift, VectorSum(sum)) in block.shift.iter_mut().zip(sums) {
+            *shift = sum;
         }
     }
 

@@ -38,6 +38,8 @@ pub struct Rank<const D: usize, S: Real> {
     pub walls: Vec<WallSet<D, S>>,
     /// Lowest pressure that a wall has towards each owned fluid particle, Pa: the density pass says.
     lowest_wall_pressure: Vec<f64>,
+    /// Velocity by which each owned fluid particle is shifted, m/s; nothing if none is.
+    shift: Vec<[f64; D]>,
     /// Results of the force sweep.
     pub(crate) force_rate: Vec<Acceleration<D>>,
     /// Results of the density sweep.
@@ -109,6 +111,11 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         Self { state, elements, ..Self::default() }
     }
 
+    /// Makes room for what a scheme keeps per particle beyond its state.
+    pub fn make_room(&mut self, shifts: bool) {
+        self.shift.resize(if shifts { self.fluid.owned() } else { 0 }, [0.0; D]);
+    }
+
     /// Pairs of the owned fluid particles with fluid and walls.
     pub fn pairs(&self) -> u64 {
         self.near_fluid.pairs() + self.walls.iter().map(|wall| wall.near.pairs()).sum::<u64>()
@@ -129,6 +136,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
                 mass: &self.state.mass[..n],
                 pressure_gradient: &mut self.state.pressure_gradient[..n],
                 lowest_wall_pressure: &mut self.lowest_wall_pressure,
+                shift: &mut self.shift,
             },
             deviation: &mut self.deviation,
             pressure: &mut self.pressure,
@@ -164,6 +172,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.state.len() * column
             + self.elements.bytes()
             + (self.deviation.len() + self.pressure.len()) * record
+            + self.shift.len() * size_of::<[f64; D]>()
             + self.force_rate.len() * (size_of::<[f64; D]>() + size_of::<DensityRate>() + 8)
             + self.near_fluid.bytes()
             + self.cells.as_ref().map_or(0, CellList::bytes)

@@ -172,6 +172,7 @@ fn model<const D: usize>(constants: &Constants<D>, solids: Vec<SolidModel<D>>) -
         limits: constants.step_limits(),
         domain: constants.domain,
         periods: constants.periods,
+        closed: constants.closed,
         lowest_pressure: constants.cavitation_pressure.unwrap_or(f64::NEG_INFINITY),
         solids,
         on_lost: match constants.on_lost {
@@ -197,6 +198,7 @@ fn features<const D: usize>(
             (_, alpha) if alpha > 0.0 => Viscosity::Artificial(alpha),
             _ => Viscosity::None,
         },
+        shifting: scene.numerics.scheme == scene::Scheme::DeltaPlus,
         walls: particles.kind.last().is_some_and(|&kind| kind > 0),
     }
 }

@@ -13,8 +13,8 @@ use crate::scheme::Scheme;
 use crate::state::State;
 use crate::team::Team;
 use crate::terms::{
-    ArtificialViscosity, Continuity, DeltaContinuity, LaminarViscosity, NoSlip, SymmetricPressure,
-    WallContinuity, WallPressure,
+    ArtificialViscosity, Continuity, DeltaContinuity, LaminarViscosity, NoSlip, Shifting,
+    SymmetricPressure, WallContinuity, WallPressure,
 };
 use crate::walls::WallElements;
 use bytemuck::Pod;
@@ -30,6 +30,8 @@ pub struct Features {
     pub density_diffusion: f64,
     /// Friction in the fluid.
     pub viscosity: Viscosity,
+    /// Whether particles are shifted.
+    pub shifting: bool,
     /// Whether there are walls.
     pub walls: bool,
 }
@@ -117,7 +119,7 @@ fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) 
             }
         }
         (Viscosity::Laminar(dynamic_viscosity), diffusive) => {
-            let force = (pressure, LaminarViscosity { dynamic_viscosity, softening });
+            let force = (pressure, LaminarViscosity { dynamic_viscosity });
             if diffusive {
                 Scheme::new::<K>(diffusion, force)
             } else {
@@ -125,11 +127,14 @@ fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) 
             }
         }
     };
+    let shifting = Shifting::<K>::new(model.support_radius, model.spacing);
+    let builder = if features.shifting { builder.shifting(shifting) } else { builder };
     if !features.walls {
         return builder.build();
     }
     let wall = WallPressure { sound_speed };
     let builder = builder.walls(WallContinuity, wall);
+    let builder = if features.shifting { builder.wall_shifting(shifting) } else { builder };
     match features.viscosity {
         Viscosity::Laminar(dynamic_viscosity) => {
             let smallest_distance = 0.25 * model.spacing;

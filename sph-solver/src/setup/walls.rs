@@ -6,7 +6,9 @@ use super::shapes::Shapes;
 use super::{LARGEST, MOST_PARTICLES, lattice_error, too_many};
 use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
-use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Solid, WallElements, wall_elements};
+use sph_geometry::{
+    Aabb, Domain, FluidSide, Lattice, Solid, WallElements, free_cells, wall_elements,
+};
 
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
 const MOST_ROWS: f64 = 1e9;
@@ -58,6 +60,28 @@ pub fn models<const D: usize>(scene: &Scene, solids: &[Solid<D>]) -> Vec<SolidMo
         }
     };
     solids.iter().zip(&scene.solid).map(model).collect()
+}
+
+/// Whether so many particles of fluid fill every cell that fluid can be in.
+pub fn is_closed<const D: usize>(
+    scene: &Scene,
+    solids: &[Solid<D>],
+    lattice: &Lattice<D>,
+    bounds: &Aabb<D>,
+    fluid: usize,
+) -> Result<bool, SceneError> {
+    // The larger of the two numbers is soon known where the domain is much larger than the fluid.
+    let cells = (0..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
+    if solids.is_empty() || cells.product::<f64>() > 4.0 * fluid as f64 {
+        let periodic = scene.periodic_axes::<D>().iter().all(|periodic| *periodic);
+        let cells = (0..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
+        return Ok(periodic && (cells.product::<f64>() - fluid as f64).abs() < 0.5);
+    }
+    let domain = Domain { bounds: *bounds, periodic: scene.periodic_axes() };
+    let place = scene.numerics.spacing.place;
+    let free = free_cells(solids, lattice, &domain)
+        .map_err(|error| lattice_error(scene, place, &error))?;
+    Ok(free.count() <= fluid as u64)
 }
 
 /// Adds the wall particles, solid by solid.

@@ -17,6 +17,7 @@ mod continuity;
 mod delta_continuity;
 mod pressure;
 mod quantity;
+mod shifting;
 mod viscosity;
 mod wall_continuity;
 mod wall_friction;
@@ -27,7 +28,10 @@ pub use artificial_viscosity::ArtificialViscosity;
 pub use continuity::Continuity;
 pub use delta_continuity::DeltaContinuity;
 pub use pressure::SymmetricPressure;
-pub use quantity::{Acceleration, DensityRate, Deviation, Pressure, Quantity, Rate};
+pub use quantity::{
+    Acceleration, Crowding, DensityRate, Deviation, Pressure, Quantity, Rate, VectorSum,
+};
+pub use shifting::{Shifting, shift};
 pub use viscosity::LaminarViscosity;
 pub use wall_continuity::WallContinuity;
 pub use wall_friction::NoSlip;
@@ -132,6 +136,18 @@ pub trait PairTerm<const D: usize, Q: Quantity>: Copy + Send + Sync {
     /// Whether the term adds nothing at all, so that its neighbours need not be visited.
     const EMPTY: bool = false;
 
+    /// Whether the term has a part along r_ij, which [`coefficient`](Self::coefficient) gives.
+    const CENTRAL: bool = true;
+
+    /// Whether the term has a part along v_i − v_j, which [`shear`](Self::shear) gives.
+    const SHEARS: bool = false;
+
+    /// The coefficient s of (v_i − v_j) F_ij V_j, ∇W_ij = F_ij r_ij, in place of c ∇W_ij V_j. Only
+    /// accelerations have such a part.
+    fn shear<L: Lanes>(&self, _: &Target<D, L>, _: &Source<D, L>, _: &Pair<D, L>) -> L {
+        L::zero()
+    }
+
     /// The coefficient of one pair a lane, see [`Quantity`] for what it is the coefficient of.
     ///
     /// Must be finite for every pair, also for `r_ij = 0` and for pairs beyond the support; a
@@ -142,6 +158,7 @@ pub trait PairTerm<const D: usize, Q: Quantity>: Copy + Send + Sync {
 
 impl<const D: usize, Q: Quantity> PairTerm<D, Q> for () {
     const EMPTY: bool = true;
+    const CENTRAL: bool = false;
 
     #[inline(always)]
     fn coefficient<L: Lanes>(&self, _: &Target<D, L>, _: &Source<D, L>, _: &Pair<D, L>) -> L {
@@ -151,22 +168,35 @@ impl<const D: usize, Q: Quantity> PairTerm<D, Q> for () {
 
 impl<const D: usize, Q: Quantity, A: PairTerm<D, Q>, B: PairTerm<D, Q>> PairTerm<D, Q> for (A, B) {
     const EMPTY: bool = A::EMPTY && B::EMPTY;
+    const CENTRAL: bool = A::CENTRAL || B::CENTRAL;
+    const SHEARS: bool = A::SHEARS || B::SHEARS;
 
     #[inline(always)]
     fn coefficient<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, pair: &Pair<D, L>) -> L {
         // Adding a zero would be an instruction: it changes the sign of −0.
-        if B::EMPTY {
+        if !B::CENTRAL {
             self.0.coefficient(i, j, pair)
-        } else if A::EMPTY {
+        } else if !A::CENTRAL {
             self.1.coefficient(i, j, pair)
         } else {
             self.0.coefficient(i, j, pair) + self.1.coefficient(i, j, pair)
         }
     }
+
+    #[inline(always)]
+    fn shear<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, pair: &Pair<D, L>) -> L {
+        if !B::SHEARS {
+            self.0.shear(i, j, pair)
+        } else if !A::SHEARS {
+            self.1.shear(i, j, pair)
+        } else {
+            self.0.shear(i, j, pair) + self.1.shear(i, j, pair)
+        }
+    }
 }
 
-/// `strength π_ij` with `π_ij = (v_j − v_i)·r_ji / (|r_ij|² + softening)`: the form that artificial
-/// and physical viscosity share. `strength` in Pa s, `softening` in m².
+/// `strength π_ij` with `π_ij = (v_j − v_i)·r_ji / (|r_ij|² + softening)`: the form of artificial
+/// viscosity. `strength` in Pa s, `softening` in m².
 #[inline(always)]
 pub(crate) fn viscous<const D: usize, L: Lanes>(
     strength: f64,
@@ -273,7 +303,13 @@ pub(crate) mod scalar {
         (i, j, pair): &(Target<2, f64>, Source<2, f64>, Pair<2, f64>),
     ) -> Q::Rate<2> {
         let mut sum = Q::zero();
-        Q::add(&mut sum, term.coefficient(i, j, pair), pair);
+        if T::CENTRAL {
+            Q::add(&mut sum, term.coefficient(i, j, pair), pair);
+        }
+        if T::SHEARS {
+            let velocity = difference(&i.velocity, &j.velocity);
+            Q::add_shear(&mut sum, term.shear(i, j, pair), &velocity, pair);
+        }
         let mut rates = [Q::Rate::default()];
         Q::rates(&sum, &[i.density], &mut rates);
         rates[0]

@@ -26,6 +26,16 @@ pub trait Quantity: Copy + Send + Sync + 'static {
     /// Adds one pair a lane.
     fn add<const D: usize, L: Lanes>(sum: &mut Self::Sum<D, L>, coefficient: L, pair: &Pair<D, L>);
 
+    /// Adds s (v_i − v_j) F V of one pair a lane, see [`PairTerm::shear`](super::PairTerm::shear).
+    #[inline(always)]
+    fn add_shear<const D: usize, L: Lanes>(
+        _: &mut Self::Sum<D, L>,
+        _: L,
+        _: &[L; D],
+        _: &Pair<D, L>,
+    ) {
+    }
+
     /// The results of the targets in the first lanes, given their densities in kg/m³.
     fn rates<const D: usize, L: Lanes>(
         sum: &Self::Sum<D, L>,
@@ -44,6 +54,31 @@ pub struct Deviation;
 /// The sweep returns accelerations, m/s².
 #[derive(Debug, Clone, Copy)]
 pub struct Pressure;
+
+/// Records carry anything: only places count. A term gives c, and the sweep returns Σ_j c ∇W_ij V_j, 1/m.
+#[derive(Debug, Clone, Copy)]
+pub struct Crowding;
+
+/// A sum of gradients, 1/m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VectorSum<const D: usize>(pub [f64; D]);
+
+impl<const D: usize> Rate for VectorSum<D> {}
+
+impl<const D: usize> Default for VectorSum<D> {
+    fn default() -> Self {
+        Self([0.0; D])
+    }
+}
+
+impl<const D: usize> AddAssign for VectorSum<D> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        for (sum, part) in self.0.iter_mut().zip(other.0) {
+            *sum += part;
+        }
+    }
+}
 
 /// What the density sweep tells of a particle.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -128,6 +163,20 @@ impl Quantity for Pressure {
     }
 
     #[inline(always)]
+    fn add_shear<const D: usize, L: Lanes>(
+        sum: &mut [L; D],
+        coefficient: L,
+        velocity: &[L; D],
+        pair: &Pair<D, L>,
+    ) {
+        // F V = w per unit of length.
+        let factor = coefficient * (pair.weight * pair.per_unit);
+        for (sum, velocity) in sum.iter_mut().zip(velocity) {
+            *sum = factor.mul_add(*velocity, *sum);
+        }
+    }
+
+    #[inline(always)]
     fn rates<const D: usize, L: Lanes>(
         sum: &[L; D],
         density: &[f64],
@@ -136,6 +185,29 @@ impl Quantity for Pressure {
         let sum = sum.map(numbers);
         for (l, (rate, density)) in rates.iter_mut().zip(density).enumerate() {
             *rate = Acceleration(std::array::from_fn(|k| sum[k][l] / density));
+        }
+    }
+}
+
+impl Quantity for Crowding {
+    type Rate<const D: usize> = VectorSum<D>;
+    type Sum<const D: usize, L: Lanes> = [L; D];
+
+    #[inline(always)]
+    fn zero<const D: usize, L: Lanes>() -> [L; D] {
+        [L::zero(); D]
+    }
+
+    #[inline(always)]
+    fn add<const D: usize, L: Lanes>(sum: &mut [L; D], coefficient: L, pair: &Pair<D, L>) {
+        Pressure::add(sum, coefficient, pair);
+    }
+
+    #[inline(always)]
+    fn rates<const D: usize, L: Lanes>(sum: &[L; D], _: &[f64], rates: &mut [VectorSum<D>]) {
+        let sum = sum.map(numbers);
+        for (l, rate) in rates.iter_mut().enumerate() {
+            *rate = VectorSum(std::array::from_fn(|k| sum[k][l]));
         }
     }
 }

@@ -53,6 +53,7 @@ impl<const D: usize> Case<D> {
             domain: ([-4.0 * dp; D], self.tank.map(|n| f64::from(n + 4) * dp)),
             periods: [None; D],
             lowest_pressure: f64::NEG_INFINITY,
+            closed: false,
             on_lost: OnLost::Stop,
             solids: vec![SolidModel { name: "tank".into(), center: [0.0; D], slips: true }],
         }
