@@ -10,8 +10,8 @@ use sph_solver::space::{Open, PairScale};
 use sph_solver::sweep::{Neighbors, sweep};
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    Acceleration, ArtificialViscosity, DeltaContinuity, Deviation, PairTerm, Pressure, Quantity,
-    SymmetricPressure,
+    Acceleration, ArtificialViscosity, DeltaContinuity, DensityRate, Deviation, PairTerm, Pressure,
+    Quantity, SymmetricPressure,
 };
 use std::marker::PhantomData;
 
@@ -113,8 +113,8 @@ impl<S: Real> SweepCase<S> {
     }
 
     /// Changes of density of all particles.
-    pub fn density_rates<T: PairTerm<3, Deviation>>(&self, terms: T) -> Vec<f64> {
-        let mut rates = vec![0.0; self.len()];
+    pub fn density_rates<T: PairTerm<3, Deviation>>(&self, terms: T) -> Vec<DensityRate> {
+        let mut rates = vec![DensityRate::default(); self.len()];
         self.density_sweep(terms, &mut rates, None);
         rates
     }
@@ -124,7 +124,7 @@ impl<S: Real> SweepCase<S> {
     pub fn density_sweep<T: PairTerm<3, Deviation>>(
         &self,
         terms: T,
-        rates: &mut [f64],
+        rates: &mut [DensityRate],
         team: Option<&Team>,
     ) {
         self.sweep::<Deviation, T>(&self.deviation, terms, rates, team);

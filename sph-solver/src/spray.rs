@@ -18,7 +18,7 @@ const SPRAY: f64 = 0.3;
 
 /// Fluid and walls fill more than this of the space around a particle that is away from the free
 /// surface.
-const INSIDE: f64 = 0.85;
+const INSIDE: f64 = 0.75;
 
 /// Whether a particle has torn off from the body of the fluid.
 #[inline]
