@@ -1,12 +1,13 @@
 //! The loop of a run on one rank: steps, outputs, checkpoints.
 
-use super::checkpoints::{self, Progress};
+use super::checkpoints::{self, Kept, Progress};
 use super::digest::Digest;
 use super::files::Files;
 use super::gather::gather_by_id;
 use super::plan::RunPlan;
 use super::samples::{self, Budget};
 use super::schedule::Schedule;
+use super::stop::StopReason;
 use crate::error::RunError;
 use crate::model::Model;
 use crate::physics::Physics;
@@ -77,10 +78,11 @@ where
 {
     let start = Instant::now();
     let (state, clock, progress) = if plan.resume {
+        drop(state);
         let (state, clock, progress) = checkpoints::load(comm, plan)?;
         (state, Some(clock), progress)
     } else {
-        (state, None, Progress::START)
+        (state, None, Progress::start(plan))
     };
     let resumed_at = clock.map(|clock| clock.time);
     // Outputs of steps that the checkpoint has not seen yet are written again.
@@ -92,12 +94,16 @@ where
     let mut out = Outputs {
         comm,
         plan,
-        snapshots: Schedule::new(plan.snapshots).from(progress.next_snapshot),
-        samples: Schedule::new(plan.samples).from(progress.next_sample),
-        checkpoints: Schedule::new(plan.checkpoints).from(progress.next_checkpoint),
+        snapshots: progress.snapshots,
+        samples: progress.samples,
+        checkpoints: progress.checkpoints,
         lost: progress.lost,
         first_budget: None,
+        kept: None,
+        saved: None,
+        fast: false,
     };
+    let mut stopping = None;
     let mut simulation = Simulation::<D, S, K, P>::new(comm, team, model, physics, state, clock)?;
     let begin = simulation.time();
     if resumed_at.is_none() {
@@ -105,14 +111,22 @@ where
     }
     loop {
         let time = simulation.time();
-        if simulation.lists_due() && out.checkpoints.due(time) {
-            out.checkpoint(&simulation)?;
+        if simulation.lists_due() {
+            if out.checkpoints.due(time) || stopping.is_some() {
+                out.checkpoint(&simulation)?;
+            } else if plan.keeps_state {
+                out.keep(&simulation)?;
+            }
+            if let Some(reason) = stopping {
+                return Err(out.stopped(&simulation, reason));
+            }
         }
         let last = time >= plan.end_time;
         if last {
             // So that nothing outside the domain is in the last report.
             simulation.renew_lists();
         }
+        simulation.ask(StopReason::to_number(plan.stop.reason()));
         let time_step = simulation.time_step();
         let report = last || out.snapshots.due(time) || out.samples.due(time);
         let full = simulation.step(report)?;
@@ -121,6 +135,9 @@ where
             let budget = out.report::<S, K, P>(&simulation, &full, last, files.as_mut())?;
             if last {
                 let first = out.first_budget.unwrap_or(budget);
+                if plan.checkpoints.is_some() {
+                    out.save_kept(&simulation)?;
+                }
                 let finished = Finished {
                     digest: digest(comm, &full)?,
                     last: full,
@@ -133,6 +150,13 @@ where
                 };
                 return Ok((simulation, finished));
             }
+        }
+        out.notice_speed(&simulation);
+        stopping = stopping.or(StopReason::from_number(simulation.asked()));
+        if let Some(reason) = stopping
+            && out.save_kept(&simulation)?
+        {
+            return Err(out.stopped(&simulation, reason));
         }
         watch(Status {
             step: simulation.steps(),
@@ -168,7 +192,17 @@ struct Outputs<'a, const D: usize> {
     checkpoints: Schedule,
     lost: u64,
     first_budget: Option<Budget<D>>,
+    /// State of the last rebuild, unless it is in a checkpoint.
+    kept: Option<Kept<D>>,
+    /// Step of the last checkpoint of this process.
+    saved: Option<u64>,
+    /// Whether the flow has been called too fast.
+    fast: bool,
 }
+
+/// Flows faster than this fraction of the sound speed are called too fast: the density then varies
+/// by more than 2 %.
+const FASTEST_MACH: f64 = 0.15;
 
 impl<const D: usize> Outputs<'_, D> {
     fn walls<S: Real + Pod, K: Kernel, P: Physics<D>>(
@@ -225,13 +259,81 @@ impl<const D: usize> Outputs<'_, D> {
         // Also makes sure that no rank has met a fault: a bad state never becomes a checkpoint.
         let clock = simulation.clock()?;
         self.checkpoints.done(clock.time);
-        let progress = Progress {
-            next_snapshot: self.snapshots.next(),
-            next_sample: self.samples.next(),
-            next_checkpoint: self.checkpoints.next(),
+        checkpoints::save(self.comm, self.plan, simulation.state(), clock, self.progress())?;
+        self.saved = Some(clock.step);
+        self.kept = None;
+        Ok(())
+    }
+
+    fn progress(&self) -> Progress {
+        Progress {
+            snapshots: self.snapshots,
+            samples: self.samples,
+            checkpoints: self.checkpoints,
             lost: self.lost,
+        }
+    }
+
+    /// Keeps a copy of the present state, from which new lists are about to be built.
+    fn keep<S: Real + Pod, K: Kernel, P: Physics<D>>(
+        &mut self,
+        simulation: &Simulation<'_, D, S, K, P>,
+    ) -> Result<(), RunError> {
+        let _timer = simulation.timings().measure(Phase::Output);
+        let clock = simulation.clock()?;
+        let mut fluid = self.kept.take().map_or_else(State::default, |kept| kept.fluid);
+        fluid.clone_from(&simulation.rank().state);
+        self.kept = Some(Kept { fluid, clock, progress: self.progress() });
+        Ok(())
+    }
+
+    /// Makes sure that a checkpoint of the last rebuild is there. Without a kept state there may be
+    /// none, which is what this tells.
+    fn save_kept<S: Real + Pod, K: Kernel, P: Physics<D>>(
+        &mut self,
+        simulation: &Simulation<'_, D, S, K, P>,
+    ) -> Result<bool, RunError> {
+        let _timer = simulation.timings().measure(Phase::Output);
+        let Some(Kept { mut fluid, clock, progress }) = self.kept.take() else {
+            return Ok(self.plan.keeps_state && self.saved.is_some());
         };
-        checkpoints::save(self.comm, self.plan, simulation.state(), clock, progress)
+        // No rank has met a fault since, or the run would have ended.
+        fluid.append(&simulation.rank().solids);
+        checkpoints::save(self.comm, self.plan, fluid, clock, progress)?;
+        self.saved = Some(clock.step);
+        Ok(true)
+    }
+
+    /// What a run that was asked to end tells.
+    fn stopped<S: Real + Pod, K: Kernel, P: Physics<D>>(
+        &self,
+        simulation: &Simulation<'_, D, S, K, P>,
+        reason: StopReason,
+    ) -> RunError {
+        let (step, time) = (simulation.steps(), simulation.time());
+        let checkpoint = checkpoints::path(self.plan, self.saved.unwrap_or(step));
+        RunError::Stopped { reason, step, time, checkpoint }
+    }
+
+    /// Says it, once, when the flow is faster than the sound speed allows for.
+    fn notice_speed<S: Real + Pod, K: Kernel, P: Physics<D>>(
+        &mut self,
+        simulation: &Simulation<'_, D, S, K, P>,
+    ) {
+        let speed = simulation.largest_speed();
+        let sound_speed = simulation.model().limits.sound_speed;
+        if self.comm.rank() != 0 || self.fast || speed <= FASTEST_MACH * sound_speed {
+            return;
+        }
+        self.fast = true;
+        self.plan.notes.add(format!(
+            "at t = {:.4} s the flow has reached {speed:.3} m/s, {:.2} of the sound speed of \
+             {sound_speed:.3} m/s: beyond {FASTEST_MACH} it is visibly compressible. Set \
+             numerics.sound_speed to about {:.3}",
+            simulation.time(),
+            speed / sound_speed,
+            10.0 * speed,
+        ));
     }
 
     fn report<S: Real + Pod, K: Kernel, P: Physics<D>>(

@@ -114,6 +114,8 @@ pub struct Summary {
     pub snapshots: u64,
     /// Time at which this process took over from a checkpoint, s.
     pub resumed_at: Option<f64>,
+    /// Remarks about the scene and the run, as they were told while it ran.
+    pub notes: Vec<String>,
     /// Hash of the final state ordered by id: equal digests mean equal bits.
     pub state_digest: String,
 }
@@ -268,6 +270,8 @@ where
         lost_particles: finished.lost,
         snapshots: finished.snapshots,
         resumed_at: finished.resumed_at,
+        // The caller collects them.
+        notes: Vec::new(),
         state_digest: finished.digest.to_string(),
     })
 }
