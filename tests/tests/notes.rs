@@ -31,7 +31,7 @@ fn a_run_says_what_check_says() {
     let report = checked(with(Run::check(&scene)));
     let expected = texts(&report);
     for words in [
-        "the sound speed is only 3.6 times",
+        "the sound speed is only 5.0 times",
         "the particles hold 3.2 % less fluid than the regions",
         "probe deep at [-0.03, 0.05] is 0.0300 m inside solid tank",
         "probe away at [7.0, 0.05] is outside of the domain",

@@ -7,12 +7,12 @@ use tempfile::TempDir;
 
 /// What batch systems take for "try again".
 const AGAIN: i32 = 75;
-/// End of the runs here, s.
+/// End of the runs here, s: what `small` sets.
 const END: f64 = 0.6;
 
 fn small() -> (TempDir, Run) {
     let folder = tempfile::tempdir().unwrap();
-    let run = Run::new(write_scene(folder.path(), SMALL)).threads(1).end_time(END);
+    let run = Run::new(write_scene(folder.path(), SMALL)).threads(1).set("end_time=0.6");
     // Outputs between the steps of which a restart could lose some.
     (folder, run.set("output.snapshots=0.02").set("output.energies=0.002"))
 }
