@@ -12,7 +12,7 @@ use crate::atomic::write_text_atomically;
 ///
 /// The head names each column with its unit, `pressure [Pa]`. A row goes to the system in one
 /// call as soon as it is given, so a process that dies leaves whole rows; resuming cuts off what
-/// a machine that lost power may have left.
+/// a machine that lost power may have left. A value that there is not, NaN, leaves its cell empty.
 ///
 /// # Examples
 ///
@@ -111,7 +111,9 @@ impl TableWriter {
         push_number(&mut self.line, time);
         for &value in values {
             self.line.push(',');
-            push_number(&mut self.line, value);
+            if !value.is_nan() {
+                push_number(&mut self.line, value);
+            }
         }
         self.line.push('\n');
         self.file.write_all(self.line.as_bytes()).map_err(IoError::write(&self.path))
@@ -149,7 +151,8 @@ impl Table {
     }
 }
 
-/// Reads a table that [`TableWriter`] wrote. A last row without line end is left out.
+/// Reads a table that [`TableWriter`] wrote. A last row without line end is left out; empty cells
+/// become NaN.
 ///
 /// # Errors
 ///
@@ -166,10 +169,11 @@ pub fn read_table(path: impl AsRef<Path>) -> Result<Table, IoError> {
             None => (title.to_owned(), String::new()),
         })
         .unzip();
+    let value_of = |cell: &str| if cell.is_empty() { Ok(f64::NAN) } else { cell.parse() };
     let rows = lines
         .zip(2..)
         .map(|(line, number)| {
-            let row: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
+            let row: Result<Vec<f64>, _> = line.split(',').map(value_of).collect();
             match row {
                 Ok(row) if row.len() == names.len() => Ok(row),
                 Ok(row) => Err(text_error(
@@ -273,6 +277,19 @@ mod tests {
             assert_eq!(read.column("p").unwrap(), [0.0, 1.0, 2.0, 3.0, 4.0, -0.0]);
             assert_eq!(read.rows[5][2], f64::INFINITY);
         }
+    }
+
+    #[test]
+    fn what_there_is_not_leaves_its_cell_empty() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        let mut table = TableWriter::create(&path, &COLUMNS).unwrap();
+        table.row(0.5, &[f64::NAN, 0.0]).unwrap();
+        table.row(1.0, &[2.0, f64::NAN]).unwrap();
+        assert!(fs::read_to_string(&path).unwrap().ends_with("\n0.5,,0\n1,2,\n"));
+        let read = read_table(&path).unwrap();
+        assert!(read.rows[0][1].is_nan() && read.rows[1][2].is_nan());
+        assert_eq!((read.rows[0][2], read.rows[1][1]), (0.0, 2.0));
     }
 
     #[test]

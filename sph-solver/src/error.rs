@@ -69,12 +69,15 @@ pub enum RunError {
     /// A checkpoint belongs to another scene.
     #[error(
         "{} was written by a run of another scene or with other --set values, and cannot be \
-         continued. Give the scene and values of that run, or another --out folder",
-        path.display()
+         continued: {}. Give the scene and values of that run, or another --out folder",
+        path.display(),
+        differences.join("; ")
     )]
     OtherScene {
         /// The checkpoint.
         path: std::path::PathBuf,
+        /// What differs.
+        differences: Vec<String>,
     },
     /// Started by `mpirun`, but built without MPI.
     #[error(
@@ -125,6 +128,54 @@ pub enum RunError {
         "--ranks is for ranks as threads; under mpirun the ranks are the processes: leave it out"
     )]
     RanksUnderMpi,
+    /// The folder holds the results of another run.
+    #[error(
+        "{} holds {count} file(s) of an earlier run, {example} among them. {} --overwrite replaces \
+         them by a new run, and --out gives another folder",
+        path.display(),
+        if *resumable {
+            "--resume goes on from their last checkpoint,"
+        } else {
+            "They hold no checkpoint for --resume to go on from;"
+        }
+    )]
+    ResultsThere {
+        /// The folder.
+        path: std::path::PathBuf,
+        /// Name of one of the files.
+        example: String,
+        /// How many there are.
+        count: usize,
+        /// Whether a checkpoint is among them.
+        resumable: bool,
+    },
+    /// Another run writes into the folder.
+    #[error(
+        "another run is writing into {}: wait until it has ended, or give another folder with --out",
+        path.display()
+    )]
+    FolderInUse {
+        /// The folder.
+        path: std::path::PathBuf,
+    },
+    /// The first rank has failed for all, and says why.
+    #[error("rank 0 could not begin")]
+    FirstRank,
+    /// The run was asked to end before its time, and has written a checkpoint.
+    #[error(
+        "the run was ended {reason} in step {step} at t = {time:.6} s; --resume goes on from {}",
+        checkpoint.display()
+    )]
+    Stopped {
+        /// Who asked.
+        reason: crate::run::StopReason,
+        /// Step.
+        step: u64,
+        /// Time, s.
+        time: f64,
+        /// The checkpoint.
+        checkpoint: std::path::PathBuf,
+    },
     /// There is no checkpoint to continue from.
     #[error(
         "there is no checkpoint in {} to resume from. Run without --resume, and with \
@@ -135,6 +186,9 @@ pub enum RunError {
         /// The folder.
         path: std::path::PathBuf,
     },
+    /// Signals cannot be waited for.
+    #[error("the system does not let this program handle signals: {0}")]
+    Signals(std::io::Error),
     /// The threads of a rank could not be started.
     #[error("threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -156,8 +210,8 @@ pub enum RunError {
     /// The cell grid cannot be laid out.
     #[error(transparent)]
     Grid(#[from] sph_neighbors::GridError),
-    /// The folder for the files could not be made.
-    #[error("the folder {} cannot be made: {source}. Give another with --out", path.display())]
+    /// The folder for the files, or a file in it, could not be made, read or removed.
+    #[error("{} cannot be used for results: {source}. Give another folder with --out", path.display())]
     Folder {
         /// The folder.
         path: std::path::PathBuf,
@@ -185,6 +239,8 @@ impl RunError {
                 | Self::NothingToResume { .. }
                 | Self::NothingLeft { .. }
                 | Self::RanksUnderMpi
+                | Self::FirstRank
+                | Self::Stopped { .. }
                 | Self::Comm(CommError::DifferentBuild { .. })
         )
     }
@@ -200,6 +256,9 @@ impl RunError {
                 | Self::NothingToResume { .. }
                 | Self::NothingLeft { .. }
                 | Self::RanksUnderMpi
+                | Self::ResultsThere { .. }
+                | Self::FolderInUse { .. }
+                | Self::FirstRank
                 | Self::Folder { .. }
         )
     }

@@ -89,6 +89,10 @@ pub struct Simulation<'a, const D: usize, S: Real> {
     skin: Skin,
     /// Extremes of the last passes of this rank, not yet known to the others.
     pending: Extremes,
+    /// Largest values of the last reduction over the ranks.
+    reduced: Extremes,
+    /// What this rank, and what any rank, asks of all of them; see [`Simulation::ask`].
+    request: (f64, f64),
     lists_due: bool,
     just_rebuilt: bool,
     lost: Vec<Lost<D>>,
@@ -142,6 +146,8 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             clock,
             skin,
             pending: clock.extremes,
+            reduced: clock.extremes,
+            request: (0.0, 0.0),
             lists_due: true,
             just_rebuilt: false,
             lost: Vec::new(),
@@ -196,6 +202,22 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
     /// Makes the next step begin with new lists, and with a look for particles outside the domain.
     pub fn renew_lists(&mut self) {
         self.lists_due = true;
+    }
+
+    /// Lets all ranks know a number with the reduction of the next step, which costs nothing; each
+    /// then finds the largest in [`asked`](Self::asked), in the same step.
+    pub fn ask(&mut self, number: f64) {
+        self.request.0 = number;
+    }
+
+    /// The largest number that any rank had asked with before the last step; 0 when there was none.
+    pub fn asked(&self) -> f64 {
+        self.request.1
+    }
+
+    /// Largest speed in the last reduction over the ranks, m/s: one step old.
+    pub fn largest_speed(&self) -> f64 {
+        self.reduced.speed2.sqrt()
     }
 
     /// Number of finished steps.
@@ -357,7 +379,10 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
     fn density_pass(&mut self) -> Result<Extremes, RunError> {
         let _timer = self.timings.measure(Phase::Density);
         let encoder = self.encoder();
-        let mut maxima = self.pending.to_array();
+        let extremes = self.pending.to_array();
+        let mut maxima = [0.0; 10];
+        maxima[..9].copy_from_slice(&extremes);
+        maxima[9] = self.request.0;
         let view = self.rank.passing();
         let pass = DensityPass {
             around: view.surroundings(&self.scale),
@@ -384,7 +409,10 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         )?;
         self.exposed += exposed;
         self.pending = Extremes { fault: own.extremes.fault, ..Extremes::NONE };
-        Ok(Extremes::from_array(maxima))
+        let [extremes @ .., request] = maxima;
+        self.request.1 = request;
+        self.reduced = Extremes::from_array(extremes);
+        Ok(self.reduced)
     }
 
     fn force_pass(&mut self, dt_before: f64, dt: f64) -> Result<(), RunError> {

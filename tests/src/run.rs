@@ -21,6 +21,7 @@ pub struct Run {
     processes: Option<(PathBuf, usize)>,
     beside: Option<Box<Self>>,
     folder: Option<PathBuf>,
+    memory_limit: Option<usize>,
     patience: Duration,
 }
 
@@ -46,6 +47,7 @@ impl Run {
             processes: None,
             beside: None,
             folder: None,
+            memory_limit: None,
             patience: PATIENCE,
         }
     }
@@ -97,6 +99,11 @@ impl Run {
         self.arg("--resume")
     }
 
+    /// Removes what earlier runs have left in the folder.
+    pub fn overwrite(self) -> Self {
+        self.arg("--overwrite")
+    }
+
     /// Runs as `mpirun -n PROCESSES` of a program built with MPI, one thread per rank.
     pub fn mpi(mut self, program: &Path, processes: usize) -> Self {
         self.processes = Some((program.into(), processes));
@@ -112,6 +119,12 @@ impl Run {
     /// Runs in this working folder.
     pub fn within(mut self, folder: &Path) -> Self {
         self.folder = Some(folder.into());
+        self
+    }
+
+    /// With so many MiB of address space, as `ulimit -v` sets it.
+    pub fn memory_limit(mut self, mebibytes: usize) -> Self {
+        self.memory_limit = Some(mebibytes);
         self
     }
 
@@ -132,7 +145,15 @@ impl Run {
             .is_some()
             .then(|| MPI_JOBS.lock().unwrap_or_else(PoisonError::into_inner));
         let mut command = match &self.processes {
-            None => Command::new(program()),
+            None => match self.memory_limit {
+                None => Command::new(program()),
+                Some(mebibytes) => {
+                    let mut command = Command::new("sh");
+                    let limit = format!("ulimit -v {}; exec \"$0\" \"$@\"", 1024 * mebibytes);
+                    command.args(["-c", &limit]).arg(program());
+                    command
+                }
+            },
             Some((program, processes)) => {
                 let mut command = Command::new("mpirun");
                 command.arg("-n").arg(processes.to_string()).arg(program);

@@ -89,6 +89,17 @@ impl Running {
         self.outcome()
     }
 
+    /// Sends a signal, such as `TERM`, to the program alone.
+    ///
+    /// # Panics
+    ///
+    /// When the system refuses.
+    pub fn signal(&self, name: &str) {
+        let process = self.child.id().to_string();
+        let sent = Command::new("kill").args([&format!("-{name}"), &process]).status();
+        assert!(sent.is_ok_and(|status| status.success()), "no signal {name} to {process}");
+    }
+
     /// SIGKILL to one rank of an MPI job.
     ///
     /// # Panics

@@ -6,8 +6,8 @@ use crate::vtu::read_vtu;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Asserts that every file under a final name is whole. Temporaries, hidden and ending in `.tmp`,
-/// may be there. A folder that does not exist holds nothing half-written.
+/// Asserts that every file under a final name is whole. Temporaries, hidden and ending in `.tmp`, and
+/// the hidden lock of a killed run may be there. A folder that does not exist holds nothing half-written.
 ///
 /// # Panics
 ///
@@ -33,7 +33,11 @@ fn visit(folder: &Path, dimension: usize, see: impl Fn(&Path, f64)) {
     for path in files(folder) {
         let name = path.file_name().and_then(|name| name.to_str()).expect("a file name");
         if name.starts_with('.') {
-            assert!(name.ends_with(".tmp"), "{} is no name of a run", path.display());
+            assert!(
+                name.ends_with(".tmp") || name == ".sph.lock",
+                "{} is no name of a run",
+                path.display()
+            );
             continue;
         }
         match path.extension().and_then(|extension| extension.to_str()) {
@@ -50,7 +54,8 @@ fn visit(folder: &Path, dimension: usize, see: impl Fn(&Path, f64)) {
             }
             Some("csv") => {
                 let table = read_table(&path);
-                table.rows.iter().flatten().for_each(|&number| see(&path, number));
+                let filled = table.rows.iter().flatten().filter(|number| !number.is_nan());
+                filled.for_each(|&number| see(&path, number));
             }
             Some("json") => {
                 let text = fs::read_to_string(&path).expect("a readable file");

@@ -126,3 +126,38 @@ fn a_mesh_that_the_test_makes_is_a_tank() {
     assert_eq!(report["meshes"][0]["triangles"], 12);
     assert!((number(&report, "/meshes/0/volume") - 0.064).abs() < 1e-9);
 }
+
+/// `sub/..` is nothing, also when there is no `sub`.
+#[test]
+fn paths_may_take_detours() {
+    let folder = tempfile::tempdir().unwrap();
+    BoxMesh::new([0.0, 0.0, 0.0], [0.4, 0.4, 0.4]).write(&folder.path().join("tank.stl"));
+    let text = "dimension = 3\nend_time = 0.1\ngravity = [0, 0, -9.81]\n\
+                [numerics]\nspacing = 0.05\n\
+                [fluid.water]\ndensity = 1000\n\
+                regions = [{ box = { min = [0, 0, 0], max = [0.2, 0.4, 0.3] } }]\n\
+                [[solid]]\nname = \"tank\"\nmesh = \"./sub/../tank.stl\"\nfluid_side = \"inside\"\n";
+    let report = report(Run::check(write_scene(folder.path(), text)));
+    assert_eq!(report["meshes"][0]["triangles"], 12);
+}
+
+/// Under a limit of memory, scenes that fit are read and the others refused: at no size the program
+/// is ended by the system.
+#[test]
+fn a_limit_of_memory_is_respected() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write_scene(folder.path(), SMALL);
+    let mut codes = Vec::new();
+    for spacing in [0.02, 0.002, 0.0006, 0.0004, 0.0003, 0.0002, 0.0001] {
+        let run = Run::check(&path).set(&format!("numerics.spacing={spacing}"));
+        let outcome = run.memory_limit(200).finish();
+        match outcome.status.code() {
+            Some(0) => (),
+            Some(2) => outcome.message.assert_contains(&["numerics.spacing", "are free here"]),
+            _ => panic!("{outcome}"),
+        }
+        codes.push(outcome.status.code());
+    }
+    assert!(codes.starts_with(&[Some(0)]) && codes.ends_with(&[Some(2)]), "{codes:?}");
+    assert!(codes.is_sorted(), "{codes:?}");
+}

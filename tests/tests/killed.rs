@@ -29,7 +29,7 @@ fn kill_after(mut running: Running, results: &Results, rows: usize, delay: Durat
 
 /// Goes on from the last checkpoint, or starts anew when there is none yet.
 fn go_on(run: Run, results: &Results) -> Run {
-    if results.files(".vtkhdf").is_empty() { run } else { run.resume() }
+    if results.files(".vtkhdf").is_empty() { run.overwrite() } else { run.resume() }
 }
 
 /// Kills `run` again and again while it goes on from its checkpoints; then lets it end.

@@ -234,7 +234,7 @@ fn a_second_run_replaces_the_first() {
     let scene = write_scene(folder.path(), SMALL);
     let run = |end_time| Run::new(&scene).threads(1).end_time(end_time).checkpoint_every(0.02);
     let results = Results::of(run(0.2));
-    results.add(run(0.1));
+    results.add(run(0.1).overwrite());
     let fresh = Results::of(run(0.1));
     assert_eq!(results.digest(), fresh.digest());
     assert_eq!(results.series(), fresh.series());
@@ -251,7 +251,7 @@ fn a_quiet_run_is_quiet_and_the_usual_one_tells() {
     let results = Results::new();
     let quiet = results.add(Run::new(&scene).threads(1));
     assert!(quiet.output.is_empty() && quiet.message.0.is_empty(), "{quiet}");
-    let usual = results.add(Run::new(&scene).threads(1).aloud());
+    let usual = results.add(Run::new(&scene).threads(1).overwrite().aloud());
     let said = format!("{}{}", usual.output, usual.message);
     let out = results.path();
     assert!(said.contains(out.to_str().unwrap()), "the results are not named: {usual}");

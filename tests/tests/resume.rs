@@ -142,12 +142,12 @@ fn small(scene: &Path) -> Results {
 }
 
 #[track_caller]
-fn assert_refused(results: &Results, run: Run) {
+fn assert_refused(results: &Results, run: Run, words: &str) {
     let before = results.contents();
     let outcome = run.threads(1).resume().out(results.path()).finish();
     assert!(matches!(outcome.status.code(), Some(1 | 2)), "{outcome}");
     outcome.message.assert_readable();
-    outcome.message.assert_contains(&["another scene", "--out", "checkpoint-"]);
+    outcome.message.assert_contains(&["another scene", "--out", "checkpoint-", words]);
     assert!(results.contents() == before, "the refused run changed files");
 }
 
@@ -156,13 +156,79 @@ fn another_scene_or_other_values_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let scene = write_scene(folder.path(), SMALL);
     let results = small(&scene);
-    assert_refused(&results, Run::new(&scene).set("numerics.cfl=0.9"));
-    assert_refused(&results, Run::new(&scene).set("numerics.spacing=0.025"));
-    assert_refused(&results, Run::new(&scene).set("numerics.precision=double"));
+    let changed = |change: &str| Run::new(&scene).set(change);
+    let words = "numerics.spacing is 0.025 and was 0.02";
+    assert_refused(&results, changed("numerics.spacing=0.025"), words);
+    let words = "numerics.precision is double and was mixed";
+    assert_refused(&results, changed("numerics.precision=double"), words);
+    let words = "gravity is [0.0, -5.0] and was [0.0, -9.81]";
+    assert_refused(&results, changed("gravity=[0, -5]"), words);
+    let words = "fluid.water.pressure is 0 and was hydrostatic";
+    assert_refused(&results, changed("fluid.water.pressure=0"), words);
     let other = tempfile::tempdir().unwrap();
     let moved = SMALL.replace("max = [0.3, 0.4]", "max = [0.4, 0.3]");
-    assert_refused(&results, Run::new(write_scene(other.path(), &moved)));
+    let moved = Run::new(write_scene(other.path(), &moved));
+    assert_refused(&results, moved, "places of the particles differ");
     // What does not change the flow may change: the end, the ranks, the outputs.
     results.add(Run::new(&scene).set("output.snapshots=0.1").end_time(0.15).ranks(2).resume());
     assert!(results.summary()["resumed_at"].as_f64().is_some());
+}
+
+/// Settings that leave the particles alone may change; the summary says which did.
+#[test]
+fn settings_may_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = write_scene(folder.path(), SMALL);
+    let plain = Results::of(Run::new(&scene).threads(1)).digest();
+    for (change, words) in [
+        ("numerics.cfl=0.5", "numerics.cfl is 0.5 and was 1"),
+        ("numerics.density_diffusion=0.05", "numerics.density_diffusion is 0.05 and was 0.1"),
+        ("numerics.skin=0.2", "numerics.skin is 0.2 and was 0.15"),
+        ("numerics.artificial_viscosity=0.1", "artificial_viscosity is 0.1 and was 0.02"),
+        ("fluid.water.viscosity=1", "fluid.water.viscosity is 1 and was 0"),
+        ("numerics.on_lost=remove", "numerics.on_lost is remove and was stop"),
+    ] {
+        let results = small(&scene);
+        results.add(Run::new(&scene).threads(1).set(change).resume());
+        let summary = results.summary();
+        let resumed_at = summary["resumed_at"].as_f64().unwrap();
+        let notes = summary["notes"].as_array().unwrap();
+        let notes: Vec<_> = notes.iter().filter_map(|note| note.as_str()).collect();
+        let told = |note: &&&str| note.contains("resumed at t =") && note.contains(words);
+        assert_eq!(notes.iter().filter(told).count(), 1, "{change}: {notes:?}");
+        assert!(resumed_at > 0.0 && resumed_at < 0.1, "{change}: {resumed_at}");
+        assert_eq!(results.digest() == plain, change.contains("on_lost"), "{change}");
+        // Up to there, everything is as it was.
+        let (table, before) = (results.table("energies"), small(&scene).table("energies"));
+        let same = before.rows.iter().filter(|row| row[0] < resumed_at).count();
+        assert!(same > 5 && table.rows[..same] == before.rows[..same], "{change}");
+        assert!(table.times_increase(), "{change}");
+    }
+}
+
+#[test]
+fn outputs_and_probes_may_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = write_scene(folder.path(), SMALL);
+    let results = small(&scene);
+    let probes = "probe=[{ name = \"P1\", at = [0.1, 0.05], fields = [\"density\"] }, \
+                  { name = \"new\", kind = \"front\", axis = \"x\" }]";
+    let change = Run::new(&scene).threads(1).set("output.energies=0.03").set(probes);
+    results.add(change.resume());
+    let plain = Results::of(Run::new(&scene).threads(1));
+    assert_eq!(results.digest(), plain.digest());
+    let resumed_at = results.summary()["resumed_at"].as_f64().unwrap();
+    // Rows every 0.01 s until then, every 0.03 s from then on, and the last state.
+    let times = results.table("energies").times();
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
+    let (before, after): (Vec<f64>, Vec<f64>) = times.iter().partition(|time| **time < resumed_at);
+    assert!(before.len() as f64 >= resumed_at / 0.01, "{times:?}");
+    let due = (1..=6).map(|n| 0.03 * f64::from(n)).filter(|time| *time >= resumed_at).count();
+    assert!((due..=due + 1).contains(&after.len()), "{times:?} from {resumed_at}");
+    // The new probe begins there; the one that reads something else goes on in a new table.
+    assert_eq!(results.table("probe-new").times(), after);
+    assert_eq!(results.table("probe-P1").times(), after);
+    let old =
+        results.files(".csv").into_iter().filter(|path| path.to_string_lossy().contains("until"));
+    assert_eq!(old.count(), 1);
 }

@@ -4,7 +4,7 @@
 //! `cargo run --release -p sph-benches --bin accuracy [-- FOLDER]`, a few minutes on one core.
 
 use sph_io::read_table;
-use sph_solver::run::{RunOptions, Summary, World, run};
+use sph_solver::run::{Existing, RunOptions, Summary, World, run};
 use sph_solver::scene::Scene;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -27,12 +27,9 @@ fn simulate(scene: &str, spacing: f64, out: &Path) -> Outcome<(PathBuf, Summary)
     let folder = out.join(format!("{}-{spacing}", scene.name()));
     let options = RunOptions {
         out: folder.clone(),
-        end_time: None,
-        ranks: None,
         threads: Some(1),
-        checkpoint_every: None,
-        resume: false,
-        blocking: false,
+        existing: Existing::Overwrite,
+        ..RunOptions::default()
     };
     let summary = run(&World::Process, &scene, &options, &|_| ())?;
     Ok((folder, summary))

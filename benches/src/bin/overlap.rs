@@ -135,7 +135,11 @@ fn simulate(arguments: &Arguments, case: &Case) -> Outcome<Value> {
         }
         _ => Command::new(&arguments.program),
     };
-    command.arg("run").arg(&arguments.scene).arg("--quiet").arg("--out").arg(&arguments.out);
+    command
+        .arg("run")
+        .arg(&arguments.scene)
+        .args(["--quiet", "--overwrite", "--out"])
+        .arg(&arguments.out);
     command.args(["--set", &format!("numerics.spacing={}", arguments.spacing)]);
     command.args(["--end-time", &arguments.end_time.to_string()]);
     command.args(["--threads", &case.threads.to_string()]);

@@ -25,6 +25,11 @@ pub fn show_plain(error: &dyn std::error::Error) {
     let _ = writeln!(stderr(), "error: {error}");
 }
 
+/// Shows a remark that is no error.
+pub fn show_note(note: &str) {
+    let _ = writeln!(stderr(), "note: {note}");
+}
+
 fn render(error: &dyn miette::Diagnostic, terminal: bool) -> String {
     let handler = if terminal {
         GraphicalReportHandler::new()

@@ -5,6 +5,7 @@
 //! | 0 | done |
 //! | 1 | the run failed |
 //! | 2 | the scene or the command line is wrong |
+//! | 75 | the run was asked to end early; `--resume` goes on from its checkpoint |
 
 mod check;
 mod diagnostics;
@@ -16,11 +17,15 @@ use crate::scene::{Scene, SceneError};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 /// Exit code of a failed run.
 const FAILED: u8 = 1;
 /// Exit code of a scene or command line that is wrong.
 const BAD_INPUT: u8 = 2;
+/// Exit code of a run that ended early and can go on: `EX_TEMPFAIL` of sysexits.h, upon which batch
+/// systems try again.
+const STOPPED: u8 = 75;
 
 /// Smoothed particle hydrodynamics from scene files.
 #[derive(Debug, Parser)]
@@ -74,6 +79,25 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A wall-clock time: seconds, or numbers with the units d, h, m, s from the longest to the shortest.
+fn duration(text: &str) -> Result<Duration, String> {
+    let mistake = || "give seconds, or days, hours, minutes and seconds such as 1h30m".to_string();
+    if let Ok(seconds) = text.parse::<f64>() {
+        let duration = Duration::try_from_secs_f64(seconds).map_err(|_| mistake())?;
+        return if duration.is_zero() { Err(mistake()) } else { Ok(duration) };
+    }
+    let mut seconds = 0_u64;
+    let mut rest = text;
+    for (unit, length) in [('d', 86_400), ('h', 3600), ('m', 60), ('s', 1)] {
+        let Some((number, after)) = rest.split_once(unit) else { continue };
+        let number: u64 = number.parse().map_err(|_| mistake())?;
+        let part = number.checked_mul(length).ok_or_else(mistake)?;
+        seconds = seconds.checked_add(part).ok_or_else(mistake)?;
+        rest = after;
+    }
+    if rest.is_empty() && seconds > 0 { Ok(Duration::from_secs(seconds)) } else { Err(mistake()) }
+}
+
 /// More threads than this in one process are a typing error, and would bring the machine down.
 const MOST_THREADS: usize = 1024;
 
@@ -96,6 +120,7 @@ fn count(text: &str) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::Existing;
     use clap::CommandFactory;
 
     #[test]
@@ -115,7 +140,19 @@ mod tests {
         assert_eq!(options.out, PathBuf::from("o"));
         assert_eq!((options.ranks, options.threads), (Some(3), Some(2)));
         assert_eq!((options.end_time, options.checkpoint_every), (Some(0.5), Some(0.1)));
-        assert!(options.resume && run.quiet);
+        assert!(options.existing == Existing::Resume && run.quiet);
+    }
+
+    #[test]
+    fn wall_clock_times_are_read() {
+        for (text, seconds) in
+            [("90", 90.0), ("0.5", 0.5), ("90m", 5400.0), ("1h30m", 5400.0), ("2d1s", 172_801.0)]
+        {
+            assert_eq!(duration(text), Ok(Duration::from_secs_f64(seconds)), "{text}");
+        }
+        for text in ["", "0", "-1", "nan", "inf", "1h30", "30m1h", "h", "1.5h", "99999999999999d"] {
+            assert!(duration(text).is_err(), "{text}");
+        }
     }
 
     #[test]
@@ -136,6 +173,8 @@ mod tests {
             "sph run a.toml --threads 100000",
             "sph run a.toml --end-time -1",
             "sph run a.toml --end-time nan",
+            "sph run a.toml --resume --overwrite",
+            "sph run a.toml --max-wall soon",
             "sph check a.toml --ranks many",
             "sph partition a.toml",
             "sph partition a.toml --ranks 8,0",

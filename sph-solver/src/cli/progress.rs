@@ -10,7 +10,7 @@ const LENGTH: u64 = 10_000;
 const FRAMES_PER_SECOND: u8 = 5;
 
 /// Shows how far a run has come, or nothing. Without a terminal nothing is drawn.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Progress {
     bar: ProgressBar,
 }
@@ -48,6 +48,11 @@ impl Progress {
             100.0 * status.exposed_seconds / seconds.max(1e-9),
             HumanDuration(Duration::from_secs_f64(left.min(1e9))),
         ));
+    }
+
+    /// Writes something else on standard error while the bar steps aside.
+    pub fn above(&self, write: impl FnOnce()) {
+        self.bar.suspend(write);
     }
 
     /// Takes the bar away.

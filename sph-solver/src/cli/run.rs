@@ -1,20 +1,23 @@
 //! `sph run`: simulates a scene.
 
 use super::progress::Progress;
-use super::{BAD_INPUT, FAILED, SceneArguments, count, diagnostics, seconds, threads};
+use super::{
+    BAD_INPUT, FAILED, STOPPED, SceneArguments, count, diagnostics, duration, seconds, threads,
+};
 use crate::error::RunError;
-use crate::run::{RunOptions, Summary, World, run};
+use crate::run::{Existing, Notes, RunOptions, Stop, Summary, World, run};
 use crate::scene::{ErrorKind, SceneError, Sources};
 use clap::Args;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub struct RunArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Folder for the results [default: out/ and the name of the scene file]
+    /// Folder for the results [default: out/ and the path of the scene file, without its ending]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Simulated time at which the run ends, s, instead of the scene's
@@ -30,30 +33,53 @@ pub struct RunArguments {
     #[arg(long, value_name = "T", value_parser = seconds, allow_negative_numbers = true)]
     checkpoint_every: Option<f64>,
     /// Go on from the latest checkpoint in the folder of the results
-    #[arg(long)]
+    #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
+    /// Remove the results of earlier runs from the folder, instead of refusing to begin
+    #[arg(long)]
+    overwrite: bool,
+    /// End with a checkpoint and exit code 75 after this wall-clock time, for example 3600, 90m or
+    /// 1h30m. Leave time for writing the checkpoint. SIGTERM, SIGINT and SIGUSR1 do the same
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    max_wall: Option<Duration>,
     /// Without overlap: each pass waits for its messages before it computes the local particles.
     /// The same results, only slower; shows what the overlap is worth
     #[arg(long)]
     blocking: bool,
-    /// No progress bar and no closing words
+    /// No progress bar, notes and closing words; summary.json holds the notes
     #[arg(long)]
     pub quiet: bool,
 }
 
 impl RunArguments {
     pub fn options(&self) -> RunOptions {
-        let stem = self.scene.scene.file_stem().unwrap_or_default();
         RunOptions {
-            out: self.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stem)),
+            out: self.out.clone().unwrap_or_else(|| default_folder(&self.scene.scene)),
             end_time: self.end_time,
             ranks: self.ranks,
             threads: self.threads,
             checkpoint_every: self.checkpoint_every,
-            resume: self.resume,
+            existing: match (self.resume, self.overwrite) {
+                (true, _) => Existing::Resume,
+                (false, true) => Existing::Overwrite,
+                (false, false) => Existing::Refuse,
+            },
             blocking: self.blocking,
+            max_wall: self.max_wall,
+            stop: Stop::default(),
+            notes: Notes::default(),
         }
     }
+}
+
+/// `out/` and the path of a scene, so that scenes of one name in different folders keep apart: as
+/// seen from the current folder, or from the root for a scene elsewhere.
+fn default_folder(scene: &Path) -> PathBuf {
+    let whole = scene.canonicalize().unwrap_or_else(|_| scene.into());
+    let here = std::env::current_dir().and_then(|here| here.canonicalize()).unwrap_or_default();
+    let path = whole.strip_prefix(&here).unwrap_or(&whole).with_extension("");
+    let names = path.components().filter(|part| matches!(part, Component::Normal(_)));
+    Path::new("out").join(names.collect::<PathBuf>())
 }
 
 pub fn main(arguments: &RunArguments) -> ExitCode {
@@ -78,6 +104,12 @@ pub fn main(arguments: &RunArguments) -> ExitCode {
             diagnostics::show_scene_error(&SceneError::new(kind, None, Sources::default()));
             ExitCode::from(BAD_INPUT)
         }
+        Err(error @ RunError::Stopped { .. }) => {
+            if world.speaks() {
+                diagnostics::show_note(&error.to_string());
+            }
+            ExitCode::from(STOPPED)
+        }
         Err(error) => {
             // All ranks have met the same error: one of them says it.
             if world.speaks() {
@@ -90,8 +122,15 @@ pub fn main(arguments: &RunArguments) -> ExitCode {
 
 fn simulate(world: &World, arguments: &RunArguments) -> Result<(), RunError> {
     let scene = world.agree(arguments.scene.read().map_err(RunError::from))?;
-    let options = arguments.options();
     let progress = Progress::new(arguments.quiet || !world.speaks());
+    let stop = Stop::on_signals().map_err(RunError::Signals)?;
+    let notes = if arguments.quiet || !world.speaks() {
+        Notes::default()
+    } else {
+        let progress = progress.clone();
+        Notes::told_to(move |note| progress.above(|| diagnostics::show_note(note)))
+    };
+    let options = RunOptions { stop, notes, ..arguments.options() };
     let result = run(world, &scene, &options, &|status| progress.show(status));
     progress.finish();
     let summary = result?;

@@ -3,7 +3,7 @@
 use super::error::StudyError;
 use super::field::spacing_for;
 use crate::error::RunError;
-use crate::run::{RunOptions, World, run};
+use crate::run::{Existing, RunOptions, World, run};
 use crate::scene::{Precision, Scene};
 use crate::setup::{Setup, time_step};
 use std::path::{Path, PathBuf};
@@ -69,11 +69,9 @@ fn measure<const D: usize>(
     let options = RunOptions {
         out: folder.0.clone(),
         end_time: Some(STEPS * step),
-        ranks: None,
         threads: Some(1),
-        checkpoint_every: None,
-        resume: false,
-        blocking: false,
+        existing: Existing::Overwrite,
+        ..RunOptions::default()
     };
     let summary = run(&World::Process, &scene, &options, &|_| ()).map_err(|error| match error {
         RunError::Scene(error) => StudyError::Scene(error),

@@ -1,37 +1,66 @@
 //! Checkpoints of a run: state in, state out.
 
 use super::gather::gather_by_id;
+use super::identity::Values;
 use super::plan::RunPlan;
+use super::schedule::Schedule;
 use crate::error::RunError;
 use crate::lio::Extremes;
 use crate::simulation::Clock;
 use crate::state::State;
 use sph_decomp::Communicator;
 use sph_io::{
-    Attributes, Checkpoint, checkpoint_name, latest_checkpoint, prune_checkpoints, read_checkpoint,
+    Attributes, Checkpoint, CheckpointFile, checkpoint_name, latest_checkpoint, prune_checkpoints,
     write_checkpoint,
 };
+use std::path::PathBuf;
 
 /// What a checkpoint holds besides particles and clock.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
-    /// Number of the next snapshot.
-    pub next_snapshot: u64,
-    /// Number of the next row of the tables.
-    pub next_sample: u64,
-    /// Number of the next checkpoint.
-    pub next_checkpoint: u64,
+    /// When the next snapshot is due.
+    pub snapshots: Schedule,
+    /// When the next row of the tables is due.
+    pub samples: Schedule,
+    /// When the next checkpoint is due.
+    pub checkpoints: Schedule,
     /// Particles taken out so far.
     pub lost: u64,
 }
 
 impl Progress {
     /// Of a new run. The start itself needs no checkpoint.
-    pub const START: Self = Self { next_snapshot: 0, next_sample: 0, next_checkpoint: 1, lost: 0 };
+    pub fn start<const D: usize>(plan: &RunPlan<D>) -> Self {
+        Self {
+            snapshots: Schedule::new(plan.snapshots),
+            samples: Schedule::new(plan.samples),
+            checkpoints: Schedule::new(plan.checkpoints).from(1),
+            lost: 0,
+        }
+    }
+}
+
+/// The state in which the present lists were built. Whoever starts from it builds the same lists, and
+/// so gets the same bits; from any later state only once new lists are due.
+#[derive(Debug)]
+pub struct Kept<const D: usize> {
+    /// The fluid of this rank. Walls at rest need no copy.
+    pub fluid: State<D>,
+    /// The clock then.
+    pub clock: Clock,
+    /// What had been written then.
+    pub progress: Progress,
+    /// Loads on solids, as [`LoadLog::save`](super::load_log::LoadLog::save) gave them.
+    pub loads: Vec<f64>,
 }
 
 /// Whole checkpoints that are kept; older ones are removed.
 const KEPT: usize = 2;
+
+/// Where the checkpoint of a step lies.
+pub fn path<const D: usize>(plan: &RunPlan<D>, step: u64) -> PathBuf {
+    plan.out.join(checkpoint_name(step))
+}
 
 /// Writes a checkpoint of all ranks. Collective.
 pub fn save<const D: usize>(
@@ -56,14 +85,19 @@ pub fn save<const D: usize>(
         .with_attribute("dt", clock.dt)
         .with_attribute("largest_speed_squared", clock.extremes.speed2)
         .with_attribute("largest_acceleration_squared", clock.extremes.acceleration2)
-        .with_attribute("next_snapshot", progress.next_snapshot)
-        .with_attribute("next_sample", progress.next_sample)
-        .with_attribute("next_checkpoint", progress.next_checkpoint)
+        .with_attribute("next_snapshot", progress.snapshots.next())
+        .with_attribute("snapshot_interval", progress.snapshots.interval())
+        .with_attribute("next_sample", progress.samples.next())
+        .with_attribute("sample_interval", progress.samples.interval())
+        .with_attribute("next_checkpoint", progress.checkpoints.next())
+        .with_attribute("checkpoint_interval", progress.checkpoints.interval())
         .with_attribute("lost_particles", progress.lost)
         .with_attribute("loads", loads)
-        .with_attribute("fingerprint", plan.fingerprint.as_str())
+        .with_attribute("identity", plan.identity.particles.to_text())
+        .with_attribute("settings", plan.identity.settings.to_text())
+        .with_attribute("simd", sph_kernels::simd_level())
         .with_attribute("scene", plan.scene_text.as_str());
-    write_checkpoint(plan.out.join(checkpoint_name(clock.step)), &checkpoint)?;
+    write_checkpoint(path(plan, clock.step), &checkpoint)?;
     prune_checkpoints(&plan.out, KEPT)?;
     Ok(())
 }
@@ -117,11 +151,18 @@ fn load_here<const D: usize>(
         return Err(none());
     }
     let latest = latest_checkpoint(&plan.out)?.ok_or_else(none)?;
-    let file = read_checkpoint::<D>(&latest.path)?;
-    let attributes = &file.attributes;
-    if attributes.text("fingerprint")? != plan.fingerprint {
-        return Err(RunError::OtherScene { path: latest.path });
+    let file = CheckpointFile::open(&latest.path)?;
+    let differences = plan
+        .identity
+        .particles
+        .changes_from(&Values::from_text(file.info().attributes.text("identity")?));
+    if !differences.is_empty() {
+        return Err(RunError::OtherScene { path: latest.path, differences });
     }
+    // Only the rows of this rank.
+    let share = share(comm, file.info().particles as usize);
+    let file = file.read_rows::<D>(share.start as u64..share.end as u64)?;
+    let attributes = &file.attributes;
     let clock = Clock {
         step: file.step,
         time: file.time,
@@ -132,24 +173,57 @@ fn load_here<const D: usize>(
             ..Extremes::NONE
         },
     };
-    let count = |name: &str, attributes: &Attributes| attributes.u64(name);
-    let progress = Progress {
-        next_snapshot: count("next_snapshot", attributes)?,
-        next_sample: count("next_sample", attributes)?,
-        next_checkpoint: count("next_checkpoint", attributes)?,
-        lost: count("lost_particles", attributes)?,
+    let schedule = |interval: Option<f64>, output: &str| -> Result<Schedule, RunError> {
+        let schedule = Schedule::new(interval);
+        let before = attributes.f64(&format!("{output}_interval"))?;
+        Ok(if before == schedule.interval() {
+            schedule.from(attributes.u64(&format!("next_{output}"))?)
+        } else {
+            schedule.from_time(file.time)
+        })
     };
-    let share = share(comm, file.len());
+    let progress = Progress {
+        snapshots: schedule(plan.snapshots, "snapshot")?,
+        samples: schedule(plan.samples, "sample")?,
+        checkpoints: schedule(plan.checkpoints, "checkpoint")?,
+        lost: attributes.u64("lost_particles")?,
+    };
+    if comm.rank() == 0 {
+        note_changes(plan, file.time, attributes)?;
+    }
     let state = State {
-        id: file.ids[share.clone()].to_vec(),
-        mass: file.column::<f64>("mass")?[share.clone()].to_vec(),
-        density: file.column::<f64>("density")?[share.clone()].to_vec(),
-        position: file.positions[share.clone()].to_vec(),
-        velocity: file.column::<[f64; D]>("velocity")?[share.clone()].to_vec(),
-        pressure_gradient: file.column::<[f64; D]>("pressure_gradient")?[share].to_vec(),
+        id: file.ids.to_vec(),
+        mass: file.column::<f64>("mass")?.to_vec(),
+        density: file.column::<f64>("density")?.to_vec(),
+        position: file.positions.to_vec(),
+        velocity: file.column::<[f64; D]>("velocity")?.to_vec(),
+        pressure_gradient: file.column::<[f64; D]>("pressure_gradient")?.to_vec(),
     };
     let loads = attributes.f64_array("loads")?.to_vec();
     Ok(Loaded { state, clock, progress, loads })
+}
+
+/// Notes what is not as it was when the checkpoint was written.
+fn note_changes<const D: usize>(
+    plan: &RunPlan<D>,
+    time: f64,
+    attributes: &Attributes,
+) -> Result<(), RunError> {
+    let before = Values::from_text(attributes.text("settings")?);
+    let changes = plan.identity.settings.changes_from(&before);
+    if !changes.is_empty() {
+        plan.notes.add(format!("resumed at t = {time} s with changes: {}", changes.join("; ")));
+    }
+    let (before, now) = (attributes.text("simd")?, sph_kernels::simd_level());
+    // Without fused multiply-adds products are rounded twice; the width of vectors does not matter.
+    if before != now && [before, now].contains(&"portable") {
+        plan.notes.add(format!(
+            "resumed at t = {time} s on a machine with {now} arithmetic, the checkpoint was written \
+             with {before}: the last bits of the results may differ from those of a run on one kind \
+             of machine"
+        ));
+    }
+    Ok(())
 }
 
 /// The part of `n` particles that a rank begins with: where they belong is found out later.

@@ -1,6 +1,6 @@
 //! The loop of a run on one rank: steps, outputs, checkpoints.
 
-use super::checkpoints::{self, Progress};
+use super::checkpoints::{self, Kept, Progress};
 use super::digest::Digest;
 use super::files::Files;
 use super::gather::gather_by_id;
@@ -8,6 +8,7 @@ use super::load_log::{LoadLog, LoadTotal};
 use super::plan::RunPlan;
 use super::samples::{self, Budget};
 use super::schedule::Schedule;
+use super::stop::StopReason;
 use crate::error::RunError;
 use crate::loads::LoadScale;
 use crate::model::Model;
@@ -80,11 +81,12 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
     let solids = model.solids.len();
     let mut loads = LoadLog::new(solids, load_scale(&model));
     let (state, clock, progress) = if plan.resume {
+        drop(state);
         let loaded = checkpoints::load(comm, plan)?;
         loads.restore(&loaded.loads);
         (loaded.state, Some(loaded.clock), loaded.progress)
     } else {
-        (state, None, Progress::START)
+        (state, None, Progress::start(plan))
     };
     let resumed_at = clock.map(|clock| clock.time);
     // Outputs of steps that the checkpoint has not seen yet are written again.
@@ -98,13 +100,17 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
     let mut out = Outputs {
         comm,
         plan,
-        snapshots: Schedule::new(plan.snapshots).from(progress.next_snapshot),
-        samples: Schedule::new(plan.samples).from(progress.next_sample),
-        checkpoints: Schedule::new(plan.checkpoints).from(progress.next_checkpoint),
+        snapshots: progress.snapshots,
+        samples: progress.samples,
+        checkpoints: progress.checkpoints,
         lost: progress.lost,
         loads,
         first_budget: None,
+        kept: None,
+        saved: None,
+        fast: false,
     };
+    let mut stopping = None;
     let mut simulation = Simulation::new(comm, team, model, scheme, state, elements, clock)?;
     if solids > 0 {
         simulation.count_loads(out.loads.scale());
@@ -115,14 +121,22 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
     }
     loop {
         let time = simulation.time();
-        if simulation.lists_due() && out.checkpoints.due(time) {
-            out.checkpoint(&simulation)?;
+        if simulation.lists_due() {
+            if out.checkpoints.due(time) || stopping.is_some() {
+                out.checkpoint(&simulation)?;
+            } else if plan.keeps_state {
+                out.keep(&simulation)?;
+            }
+            if let Some(reason) = stopping {
+                return Err(out.stopped(&simulation, reason));
+            }
         }
         let last = time >= plan.end_time;
         if last {
             // So that nothing outside the domain is in the last report.
             simulation.renew_lists();
         }
+        simulation.ask(StopReason::to_number(plan.stop.reason()));
         let time_step = simulation.time_step();
         let report = last || out.snapshots.due(time) || out.samples.due(time);
         let full = simulation.step(report)?;
@@ -134,6 +148,9 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
             let budget = out.report(&simulation, &full, last, files.as_mut())?;
             if last {
                 let first = out.first_budget.unwrap_or(budget);
+                if plan.checkpoints.is_some() {
+                    out.save_kept(&simulation)?;
+                }
                 let solids = simulation.model().solids.iter().map(|solid| solid.name.clone());
                 let loads = solids.zip(out.loads.totals(comm)?).collect();
                 let finished = Finished {
@@ -149,6 +166,13 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
                 };
                 return Ok((simulation, finished));
             }
+        }
+        out.notice_speed(&simulation);
+        stopping = stopping.or(StopReason::from_number(simulation.asked()));
+        if let Some(reason) = stopping
+            && out.save_kept(&simulation)?
+        {
+            return Err(out.stopped(&simulation, reason));
         }
         watch(Status {
             step: simulation.steps(),
@@ -191,7 +215,17 @@ struct Outputs<'a, const D: usize> {
     lost: u64,
     loads: LoadLog,
     first_budget: Option<Budget<D>>,
+    /// State of the last rebuild, unless it is in a checkpoint.
+    kept: Option<Kept<D>>,
+    /// Step of the last checkpoint of this process.
+    saved: Option<u64>,
+    /// Whether the flow has been called too fast.
+    fast: bool,
 }
+
+/// Flows faster than this fraction of the sound speed are called too fast: the density then varies
+/// by more than 2 %.
+const FASTEST_MACH: f64 = 0.15;
 
 impl<const D: usize> Outputs<'_, D> {
     fn walls<S: Real + Pod>(
@@ -249,14 +283,77 @@ impl<const D: usize> Outputs<'_, D> {
         // Also makes sure that no rank has met a fault: a bad state never becomes a checkpoint.
         let clock = simulation.clock()?;
         self.checkpoints.done(clock.time);
-        let progress = Progress {
-            next_snapshot: self.snapshots.next(),
-            next_sample: self.samples.next(),
-            next_checkpoint: self.checkpoints.next(),
-            lost: self.lost,
-        };
         let loads = self.loads.save(self.comm)?;
-        checkpoints::save(self.comm, self.plan, simulation.state(), clock, progress, loads)
+        let state = simulation.state();
+        checkpoints::save(self.comm, self.plan, state, clock, self.progress(), loads)?;
+        self.saved = Some(clock.step);
+        self.kept = None;
+        Ok(())
+    }
+
+    fn progress(&self) -> Progress {
+        Progress {
+            snapshots: self.snapshots,
+            samples: self.samples,
+            checkpoints: self.checkpoints,
+            lost: self.lost,
+        }
+    }
+
+    /// Keeps a copy of the present state, from which new lists are about to be built.
+    fn keep<S: Real + Pod>(&mut self, simulation: &Simulation<'_, D, S>) -> Result<(), RunError> {
+        let _timer = simulation.timings().measure(Phase::Output);
+        let clock = simulation.clock()?;
+        let mut fluid = self.kept.take().map_or_else(State::default, |kept| kept.fluid);
+        fluid.clone_from(&simulation.rank().state);
+        let loads = self.loads.save(self.comm)?;
+        self.kept = Some(Kept { fluid, clock, progress: self.progress(), loads });
+        Ok(())
+    }
+
+    /// Makes sure that a checkpoint of the last rebuild is there. Without a kept state there may be
+    /// none, which is what this tells.
+    fn save_kept<S: Real + Pod>(
+        &mut self,
+        simulation: &Simulation<'_, D, S>,
+    ) -> Result<bool, RunError> {
+        let _timer = simulation.timings().measure(Phase::Output);
+        let Some(Kept { fluid, clock, progress, loads }) = self.kept.take() else {
+            return Ok(self.plan.keeps_state && self.saved.is_some());
+        };
+        // No rank has met a fault since, or the run would have ended.
+        checkpoints::save(self.comm, self.plan, fluid, clock, progress, loads)?;
+        self.saved = Some(clock.step);
+        Ok(true)
+    }
+
+    /// What a run that was asked to end tells.
+    fn stopped<S: Real + Pod>(
+        &self,
+        simulation: &Simulation<'_, D, S>,
+        reason: StopReason,
+    ) -> RunError {
+        let (step, time) = (simulation.steps(), simulation.time());
+        let checkpoint = checkpoints::path(self.plan, self.saved.unwrap_or(step));
+        RunError::Stopped { reason, step, time, checkpoint }
+    }
+
+    /// Says it, once, when the flow is faster than the sound speed allows for.
+    fn notice_speed<S: Real + Pod>(&mut self, simulation: &Simulation<'_, D, S>) {
+        let speed = simulation.largest_speed();
+        let sound_speed = simulation.model().limits.sound_speed;
+        if self.comm.rank() != 0 || self.fast || speed <= FASTEST_MACH * sound_speed {
+            return;
+        }
+        self.fast = true;
+        self.plan.notes.add(format!(
+            "at t = {:.4} s the flow has reached {speed:.3} m/s, {:.2} of the sound speed of \
+             {sound_speed:.3} m/s: beyond {FASTEST_MACH} it is visibly compressible. Set \
+             numerics.sound_speed to about {:.3}",
+            simulation.time(),
+            speed / sound_speed,
+            10.0 * speed,
+        ));
     }
 
     fn report<S: Real + Pod>(

@@ -8,7 +8,7 @@ use crate::loads::NUMBERS;
 use crate::model::Model;
 use crate::simulation::{FullStep, Lost};
 use crate::walls::WallElements;
-use sph_io::{ParticleFrame, SnapshotSeries, TableWriter};
+use sph_io::{IoError, ParticleFrame, SnapshotSeries, TableWriter};
 use std::ops::Range;
 
 /// Kind of the fluid particles in files; solid k of the scene has kind 1 + k.
@@ -34,15 +34,31 @@ impl Files {
     ) -> Result<Self, RunError> {
         let table = |name: &str, columns: &[(&str, &str)]| {
             let path = plan.out.join(format!("{name}.csv"));
-            match resumed_at {
+            let table: Result<TableWriter, IoError> = match resumed_at {
                 Some(time) => TableWriter::resume(path, columns, time),
                 None => TableWriter::create(path, columns),
-            }
+            };
+            table
         };
-        let probes = plan
-            .probes
-            .iter()
-            .map(|(name, probe)| table(&format!("probe-{name}"), &probe.columns()));
+        let probes = plan.probes.iter().map(|(name, probe)| {
+            let (name, columns) = (format!("probe-{name}"), probe.columns());
+            match (table(&name, &columns), resumed_at) {
+                // The probe reads other things now.
+                (Err(IoError::Text { line: 1, path, .. }), Some(time)) => {
+                    let aside = plan.out.join(format!("{name}-until-{time}.csv"));
+                    plan.notes.add(format!(
+                        "{} has other columns than probe {name} now: it becomes {}",
+                        path.display(),
+                        aside.display()
+                    ));
+                    std::fs::rename(&path, &aside)
+                        .map_err(|source| RunError::Folder { path: aside, source })?;
+                    table(&name, &columns)
+                }
+                (table, _) => table,
+            }
+            .map_err(RunError::from)
+        });
         Ok(Self {
             series: match resumed_at {
                 Some(time) => SnapshotSeries::resume(&plan.out, &plan.name, time)?,

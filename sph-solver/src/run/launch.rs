@@ -1,10 +1,14 @@
 //! From a scene to ranks that run it.
 
-use super::checkpoints::share;
 use super::digest::Digest;
 use super::driver::Status;
+use super::folder::{Existing, RunFolder};
+use super::identity::Identity;
+use super::notes::Notes;
 use super::plan::RunPlan;
 use super::samples::{Probe, Quantity};
+use super::shares::Shares;
+use super::stop::Stop;
 use super::summary::{Meta, Summary};
 use super::table::{Features, Job, Precision, Viscosity, run_job};
 use super::world::World;
@@ -15,9 +19,10 @@ use crate::setup::{Constants, Particles, Setup};
 use crate::team::Team;
 use sph_decomp::{Blocking, Communicator, RanksError, Solo, ThreadRanks, check_same_build};
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// What the command line adds to a scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct RunOptions {
     /// Folder for all files.
     pub out: PathBuf,
@@ -29,11 +34,17 @@ pub struct RunOptions {
     pub threads: Option<usize>,
     /// Seconds of simulated time between checkpoints, instead of the scene's.
     pub checkpoint_every: Option<f64>,
-    /// Whether to continue from the latest checkpoint in `out`.
-    pub resume: bool,
+    /// What happens with results that lie in `out`.
+    pub existing: Existing,
     /// Whether to wait for all messages of a pass before the local particles are computed. The same
     /// bits, only slower: it shows what the overlap is worth.
     pub blocking: bool,
+    /// Ends the run with a checkpoint after so much wall-clock time.
+    pub max_wall: Option<Duration>,
+    /// Ends the run with a checkpoint when it is asked to.
+    pub stop: Stop,
+    /// Where remarks about the run go.
+    pub notes: Notes,
 }
 
 /// Runs a scene and returns its summary, the same on all processes. `watch` is called after each
@@ -44,16 +55,40 @@ pub fn run(
     options: &RunOptions,
     watch: &(dyn Fn(Status) + Sync),
 ) -> Result<Summary, RunError> {
+    let deadline = options.max_wall.and_then(|limit| Instant::now().checked_add(limit));
+    let stop = options.stop.clone().with_deadline(deadline);
+    world.once(|| RunFolder::look(&options.out, options.existing))?;
     match scene.dimension() {
-        2 => world.agree(Launch::<2>::new(scene, options))?.run(world, watch),
-        _ => world.agree(Launch::<3>::new(scene, options))?.run(world, watch),
+        2 => run_in::<2>(world, scene, options, stop, watch),
+        _ => run_in::<3>(world, scene, options, stop, watch),
     }
 }
 
+fn run_in<const D: usize>(
+    world: &World,
+    scene: &Scene,
+    options: &RunOptions,
+    stop: Stop,
+    watch: &(dyn Fn(Status) + Sync),
+) -> Result<Summary, RunError> {
+    let launch = world.agree(Launch::<D>::new(scene, options, stop))?;
+    // Locked until the run is over.
+    let folder = world.once(|| RunFolder::claim(&options.out, options.existing))?;
+    if let Some(note) = folder.as_ref().and_then(RunFolder::note) {
+        options.notes.add(note);
+    }
+    launch.notes.iter().for_each(|note| options.notes.add(note.as_str()));
+    launch.run(world, watch)
+}
+
 struct Launch<const D: usize> {
-    particles: Particles<D>,
+    /// About the scene.
+    notes: Vec<String>,
+    particles: Shares<D>,
     model: Model<D>,
     features: Features,
+    /// Everything that determines the bits of the result: all ranks must have the same.
+    fingerprint: String,
     plan: RunPlan<D>,
     ranks: Option<usize>,
     threads: Option<usize>,
@@ -61,27 +96,35 @@ struct Launch<const D: usize> {
 }
 
 impl<const D: usize> Launch<D> {
-    fn new(scene: &Scene, options: &RunOptions) -> Result<Self, RunError> {
-        let Setup { particles, constants, solids, .. } = Setup::<D>::new(scene)?;
+    fn new(scene: &Scene, options: &RunOptions, stop: Stop) -> Result<Self, RunError> {
+        let setup = Setup::<D>::new(scene)?;
+        let notes = setup.notes();
+        let Setup { particles, constants, solids, .. } = setup;
         let features = features(scene, &constants, &particles);
         let model = model(&constants, solids);
         let fingerprint = fingerprint(&model, &features, &particles);
         let output = &scene.output;
+        let end_time = options.end_time.unwrap_or(*scene.end_time);
+        let checkpoints = options.checkpoint_every.or(output.checkpoint_every.as_deref().copied());
         let plan = RunPlan {
             name: scene.name().to_owned(),
             scene_text: scene.text().to_owned(),
-            fingerprint,
+            identity: Identity::new(scene, &particles, end_time, checkpoints),
             out: options.out.clone(),
-            end_time: options.end_time.unwrap_or(*scene.end_time),
+            end_time,
             snapshots: output.snapshots.as_deref().copied(),
             samples: output.energies.as_deref().copied(),
-            checkpoints: options.checkpoint_every.or(output.checkpoint_every.as_deref().copied()),
+            checkpoints,
             probes: scene.probe.iter().map(|one| (one.name.to_string(), probe(one))).collect(),
-            resume: options.resume,
+            resume: options.existing == Existing::Resume,
+            keeps_state: checkpoints.is_some() || options.max_wall.is_some(),
+            stop,
+            notes: options.notes.clone(),
         };
         let (ranks, threads) = (options.ranks, options.threads);
         let blocking = options.blocking;
-        Ok(Self { particles, model, features, plan, ranks, threads, blocking })
+        let particles = Shares::new(particles, ranks.unwrap_or(1));
+        Ok(Self { notes, fingerprint, particles, model, features, plan, ranks, threads, blocking })
     }
 
     fn run(self, world: &World, watch: &(dyn Fn(Status) + Sync)) -> Result<Summary, RunError> {
@@ -132,19 +175,19 @@ impl<const D: usize> Launch<D> {
             "sph {} {} {}",
             env!("CARGO_PKG_VERSION"),
             sph_kernels::simd_level(),
-            self.plan.fingerprint
+            self.fingerprint
         );
         check_same_build(&comm, tag.as_bytes())?;
         let silent = |_: Status| ();
-        let fluid = self.particles.fluid().len();
-        run_job(
+        let (state, elements) = self.particles.take(comm);
+        let mut summary = run_job(
             Job {
                 comm,
                 team: Team::new(threads)?,
                 model: self.model.clone(),
                 plan: &self.plan,
-                state: self.particles.state(share(comm, fluid)),
-                elements: self.particles.walls(share(comm, self.particles.len() - fluid)),
+                state,
+                elements,
                 watch: if comm.rank() == 0 { watch } else { &silent },
                 meta: Meta {
                     name: self.plan.name.clone(),
@@ -158,7 +201,9 @@ impl<const D: usize> Launch<D> {
                 },
             },
             self.features,
-        )
+        )?;
+        summary.notes = self.plan.notes.all();
+        Ok(summary)
     }
 }
 

@@ -1,6 +1,9 @@
 //! What a run does besides stepping: until when, and what it writes.
 
+use super::identity::Identity;
+use super::notes::Notes;
 use super::samples::Probe;
+use super::stop::Stop;
 use std::path::PathBuf;
 
 /// Outputs of a run.
@@ -10,9 +13,8 @@ pub struct RunPlan<const D: usize> {
     pub name: String,
     /// The scene as text, kept in checkpoints.
     pub scene_text: String,
-    /// Everything that determines the bits of the result. A run continues only a checkpoint with
-    /// the same.
-    pub fingerprint: String,
+    /// What a run that goes on from a checkpoint must share with it, and what it may change.
+    pub identity: Identity,
     /// Folder for all files.
     pub out: PathBuf,
     /// Time at which the run ends, s.
@@ -27,4 +29,11 @@ pub struct RunPlan<const D: usize> {
     pub probes: Vec<(String, Probe<D>)>,
     /// Whether to continue from the latest checkpoint in `out`.
     pub resume: bool,
+    /// Whether a checkpoint must be possible in every step, at the price of a second copy of the
+    /// fluid's state.
+    pub keeps_state: bool,
+    /// Whether somebody wants the run to end.
+    pub stop: Stop,
+    /// Remarks about the run. The first rank makes them.
+    pub notes: Notes,
 }

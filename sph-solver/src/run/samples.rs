@@ -91,8 +91,8 @@ pub fn budget<const D: usize>(
     })
 }
 
-/// Reads a probe; one number per column of [`Probe::columns`]. A point without fluid within one
-/// support radius reads 0, a front without fluid −∞. Collective.
+/// Reads a probe; one number per column of [`Probe::columns`], NaN where there is nothing to read: at a
+/// point without fluid within one support radius, and for a front without fluid. Collective.
 pub fn read<const D: usize>(
     comm: &dyn Communicator,
     model: &Model<D>,
@@ -105,7 +105,7 @@ pub fn read<const D: usize>(
             let farthest = full.position.iter().map(|x| x[*axis]);
             let mut front = [farthest.fold(f64::NEG_INFINITY, f64::max)];
             comm.max_f64(&mut front)?;
-            Ok(front.to_vec())
+            Ok(vec![if front[0].is_finite() { front[0] } else { f64::NAN }])
         }
         Probe::Point { at, quantities } => {
             let radius = model.support_radius;
@@ -123,8 +123,10 @@ pub fn read<const D: usize>(
                 }
             }
             let sums = global_sums(&comm, &sums)?;
-            let read = |sum: &f64| if sums[0] > 0.0 { sum / sums[0] } else { 0.0 };
-            Ok(sums[1..].iter().map(read).collect())
+            let wet = sums[0] > 0.0;
+            let read = |sum: &f64| if wet { sum / sums[0] } else { f64::NAN };
+            let readings = sums[1..].iter().map(read);
+            Ok(readings.chain([f64::from(u8::from(wet))]).collect())
         }
     }
 }
@@ -147,7 +149,9 @@ impl<const D: usize> Probe<D> {
     pub fn columns(&self) -> Vec<(&'static str, &'static str)> {
         match self {
             Self::Front { axis } => vec![(["x", "y", "z"][*axis], "m")],
-            Self::Point { quantities, .. } => quantities.iter().map(Quantity::column).collect(),
+            Self::Point { quantities, .. } => {
+                quantities.iter().map(Quantity::column).chain([("wet", "1")]).collect()
+            }
         }
     }
 }

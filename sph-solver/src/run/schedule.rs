@@ -25,6 +25,18 @@ impl Schedule {
         Self { next, ..self }
     }
 
+    /// The same schedule, going on at `time` (s): with the first output that is not before it.
+    #[must_use]
+    pub fn from_time(self, time: f64) -> Self {
+        // Casts saturate, and an interval of infinity leaves 0.
+        self.from((time / self.interval).ceil().max(0.0) as u64)
+    }
+
+    /// The interval, s; infinity for never.
+    pub fn interval(&self) -> f64 {
+        self.interval
+    }
+
     /// Whether an output is due at `time` (s).
     pub fn due(&self, time: f64) -> bool {
         // Infinity times zero is NaN, which compares as not due.
@@ -57,6 +69,15 @@ mod tests {
         }
         assert_eq!(made, [0.0, 0.1, 0.42, 0.5]);
         assert_eq!(schedule.next(), 6);
+    }
+
+    #[test]
+    fn another_interval_goes_on_from_a_time() {
+        let schedule = Schedule::new(Some(0.25));
+        for (time, next) in [(0.0, 0), (0.1, 1), (0.25, 1), (0.3, 2)] {
+            assert_eq!(schedule.from_time(time).next(), next, "{time}");
+        }
+        assert_eq!(Schedule::new(None).from_time(3.0).next(), 0);
     }
 
     #[test]

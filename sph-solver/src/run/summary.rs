@@ -116,6 +116,8 @@ pub struct Summary {
     pub snapshots: u64,
     /// Time at which this process took over from a checkpoint, s.
     pub resumed_at: Option<f64>,
+    /// Remarks about the scene and the run, as they were told while it ran.
+    pub notes: Vec<String>,
     /// Hash of the final state ordered by id: equal digests mean equal bits.
     pub state_digest: String,
 }
@@ -266,6 +268,8 @@ pub fn summarize<const D: usize, S: Real + Pod>(
         solids: finished.loads.iter().map(|(name, load)| SolidLoad::of::<D>(name, load)).collect(),
         snapshots: finished.snapshots,
         resumed_at: finished.resumed_at,
+        // The caller collects them.
+        notes: Vec::new(),
         state_digest: finished.digest.to_string(),
     })
 }

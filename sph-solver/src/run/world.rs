@@ -57,6 +57,27 @@ impl World {
         }
     }
 
+    /// Work that one process does for all, such as locking the folder of the results; the others get
+    /// `None`. All of them fail when it fails. Collective.
+    pub fn once<T>(
+        &self,
+        work: impl FnOnce() -> Result<T, RunError>,
+    ) -> Result<Option<T>, RunError> {
+        match self {
+            Self::Process => work().map(Some),
+            #[cfg(feature = "mpi")]
+            Self::Mpi(mpi) => {
+                let mine = (mpi.rank() == 0).then(work).transpose();
+                let mut failed = [u64::from(mine.is_err())];
+                mpi.sum_u64(&mut failed)?;
+                match mine {
+                    Ok(_) if failed[0] > 0 => Err(RunError::FirstRank),
+                    result => result,
+                }
+            }
+        }
+    }
+
     /// Whether this process speaks for the run: writes files and messages.
     pub fn speaks(&self) -> bool {
         match self {

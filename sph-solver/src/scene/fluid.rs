@@ -28,7 +28,8 @@ pub struct Fluid {
     /// Initial velocity, m/s: one formula in x, y, z per component. At rest when absent.
     pub velocity: Option<At<Vec<At<Formula>>>>,
     /// Initial pressure, Pa: a formula in x, y, z, or "hydrostatic" for the weight of the fluid
-    /// between a particle and the highest fluid (against gravity). 0 when absent.
+    /// between a particle and the surface of its body of water, the highest place (against gravity) of
+    /// the fluid that is connected with it. 0 when absent.
     #[serde(default)]
     pub pressure: At<Pressure>,
 }
@@ -46,7 +47,7 @@ with_shape_keys! {
 /// An initial pressure.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Pressure {
-    /// ρ0 g times the depth below the highest fluid.
+    /// ρ0 g times the depth below the surface of the connected body of fluid.
     Hydrostatic,
     /// A formula, Pa.
     Formula(Formula),

@@ -15,7 +15,7 @@ use super::solid::Solid;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// A scene: what is simulated, how, and what is written. SI units throughout.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
@@ -122,9 +122,15 @@ impl Scene {
         self.sources.arguments()
     }
 
-    /// A path of the scene as seen from the current folder.
+    /// A path of the scene as seen from the current folder. Where the system finds nothing, `a/..` is
+    /// taken for nothing at all, so that `a` need not be there.
     pub fn resolve(&self, path: &Path) -> PathBuf {
-        self.folder.join(path)
+        let whole = self.folder.join(path);
+        if whole.exists() {
+            return whole;
+        }
+        let short = without_detours(&whole);
+        if short.exists() { short } else { whole }
     }
 
     /// The only fluid and its name.
@@ -181,6 +187,23 @@ impl Scene {
     pub fn error_without_place(&self, kind: ErrorKind) -> SceneError {
         SceneError::new(kind, None, self.sources.clone())
     }
+}
+
+/// A path without `.` and without folders that `..` leaves again.
+fn without_detours(path: &Path) -> PathBuf {
+    let mut short = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => (),
+            Component::ParentDir
+                if matches!(short.components().next_back(), Some(Component::Normal(_))) =>
+            {
+                short.pop();
+            }
+            part => short.push(part),
+        }
+    }
+    short
 }
 
 /// A checked vector of the scene as an array; missing components are 0.

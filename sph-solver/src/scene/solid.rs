@@ -3,7 +3,7 @@
 use super::located::At;
 use super::shape::with_shape_keys;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 with_shape_keys! {
     /// A solid that does not move: exactly one shape.
@@ -23,7 +23,7 @@ with_shape_keys! {
 }
 
 /// What a wall does to fluid that moves along it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum WallFriction {
     /// Nothing: only the velocity into the wall is felt.

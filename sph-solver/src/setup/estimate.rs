@@ -2,10 +2,9 @@
 
 use super::constants::time_step;
 use super::report::{
-    BYTES_PER_FLUID_PARTICLE, BYTES_PER_WALL_PARTICLE, CheckReport, PAIRS_PER_CORE_SECOND,
-    PASSES_PER_STEP, ParticleCounts, SolidCount,
+    CheckReport, PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SolidCount, VolumeOfFluid,
 };
-use super::{Setup, lattice_neighbours, memory};
+use super::{Setup, lattice_neighbours};
 use crate::scene::{ErrorKind, Scene, SceneError};
 use sph_geometry::Aabb;
 
@@ -31,17 +30,15 @@ impl<const D: usize> Setup<D> {
         let particle_updates = fluid as f64 * steps;
         let neighbours = lattice_neighbours::<D>(constants.support_radius / constants.spacing);
         let pairs = particle_updates * neighbours as f64 * PASSES_PER_STEP;
-        let walls = total - fluid;
-        let memory_bytes =
-            fluid as f64 * BYTES_PER_FLUID_PARTICLE + walls as f64 * BYTES_PER_WALL_PARTICLE;
         let bounds = Aabb::around(&self.particles.position);
         Ok(CheckReport {
             name: scene.name().into(),
             dimension: D,
-            warnings: self.warnings(&solids, memory_bytes),
+            notes: self.notes(),
             particles: ParticleCounts { total, fluid, solids },
             bounding_box: [bounds.min.to_vec(), bounds.max.to_vec()],
             domain: [constants.domain.0.to_vec(), constants.domain.1.to_vec()],
+            volume: VolumeOfFluid { regions: self.volume_of_regions, particles: self.volume() },
             spacing: constants.spacing,
             smoothing_length: constants.smoothing_length,
             support_radius: constants.support_radius,
@@ -54,33 +51,9 @@ impl<const D: usize> Setup<D> {
             steps: steps as u64,
             particle_updates,
             core_seconds: pairs / PAIRS_PER_CORE_SECOND,
-            memory_bytes,
+            memory_bytes: self.memory_bytes(),
             ranks,
             meshes: self.meshes.clone(),
         })
-    }
-
-    fn warnings(&self, solids: &[SolidCount], memory_bytes: f64) -> Vec<String> {
-        let mut warnings = Vec::new();
-        for solid in solids.iter().filter(|solid| solid.particles == 0) {
-            warnings.push(format!(
-                "solid {} has no particles: it is thinner than the spacing or out of reach of the \
-                 fluid",
-                solid.name
-            ));
-        }
-        let mach = self.expected_speed / self.constants.sound_speed;
-        if mach > 0.102 {
-            warnings.push(format!(
-                "the sound speed is only {:.1} times the expected flow speed; below 10 the fluid \
-                 is visibly compressible",
-                1.0 / mach
-            ));
-        }
-        if let Some(free) = memory::available().filter(|available| memory_bytes > *available) {
-            let [needed, free] = [memory_bytes, free].map(memory::gibibytes);
-            warnings.push(format!("a run needs about {needed}, and {free} are free here"));
-        }
-        warnings
     }
 }

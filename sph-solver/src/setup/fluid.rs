@@ -1,8 +1,11 @@
 //! The fluid at the start: lattice points inside regions, with the initial fields of the scene.
 
+use super::bodies::bodies;
 use super::particles::Particles;
 use crate::eos::EquationOfState;
 use crate::scene::{At, ErrorKind, Fluid, Formula, Place, Pressure, Region, Scene, SceneError};
+use sph_geometry::Lattice;
+use std::cell::LazyCell;
 
 /// Fluid particles before they have a density: positions, velocities and the region of each.
 pub struct Filling<const D: usize> {
@@ -46,16 +49,19 @@ impl<const D: usize> Filling<D> {
         scene: &Scene,
         fluid: &Fluid,
         state: &EquationOfState,
-        column: &Column<D>,
+        lattice: &Lattice<D>,
         mass: f64,
     ) -> Result<Particles<D>, SceneError> {
+        let column = LazyCell::new(|| {
+            Column::new(*fluid.density, &scene.gravity(), lattice, &self.position)
+        });
         let mut particles = Particles::default();
         for (region, range) in regions(fluid, &self.ends) {
             let At { value: pressure, place } = region.pressure.as_ref().unwrap_or(&fluid.pressure);
             for i in range {
                 let x = self.position[i];
                 let p = match pressure {
-                    Pressure::Hydrostatic => column.pressure(&x),
+                    Pressure::Hydrostatic => column.pressure(i, &x),
                     Pressure::Formula(formula) => finite(scene, formula, *place, &x)?,
                 };
                 let density = state.density(p);
@@ -103,26 +109,41 @@ fn finite<const D: usize>(
     Err(scene.error(place, kind))
 }
 
-/// The fluid as a column under gravity.
+/// The fluid as columns under gravity, one for each body of water.
 pub struct Column<const D: usize> {
     /// ρ0 times gravity, N/m³.
     weight: [f64; D],
-    /// Smallest ρ0 g·x over the fluid, Pa: that of its highest point.
-    top: f64,
+    /// Body of each particle.
+    body: Vec<u32>,
+    /// Smallest ρ0 g·x over each body, Pa: that of its surface.
+    tops: Vec<f64>,
 }
 
 impl<const D: usize> Column<D> {
-    /// The column of fluid at `position`. Its surface is half a `spacing` above the highest particle.
-    pub fn new(density0: f64, gravity: &[f64; D], spacing: f64, position: &[[f64; D]]) -> Self {
+    /// The columns of fluid at `position`. The surface of each is half a spacing of the `lattice`
+    /// above its highest particle.
+    pub fn new(
+        density0: f64,
+        gravity: &[f64; D],
+        lattice: &Lattice<D>,
+        position: &[[f64; D]],
+    ) -> Self {
         let weight = gravity.map(|g| density0 * g);
         let strength = weight.iter().map(|w| w * w).sum::<f64>().sqrt();
-        let highest = position.iter().map(|x| dot(&weight, x)).fold(f64::INFINITY, f64::min);
-        Self { weight, top: highest - 0.5 * spacing * strength }
+        let (body, count) = bodies(lattice, position);
+        let mut tops = vec![f64::INFINITY; count];
+        for (x, body) in position.iter().zip(&body) {
+            let top = &mut tops[*body as usize];
+            *top = top.min(dot(&weight, x));
+        }
+        tops.iter_mut().for_each(|top| *top -= 0.5 * lattice.spacing() * strength);
+        Self { weight, body, tops }
     }
 
-    /// Hydrostatic pressure at a point: ρ0 g times its depth below the surface, Pa.
-    pub fn pressure(&self, x: &[f64; D]) -> f64 {
-        dot(&self.weight, x) - self.top
+    /// Hydrostatic pressure at `x`, where particle `i` is: ρ0 g times its depth below the surface of
+    /// its body of water, Pa.
+    pub fn pressure(&self, i: usize, x: &[f64; D]) -> f64 {
+        dot(&self.weight, x) - self.tops[self.body[i] as usize]
     }
 }
 
@@ -136,11 +157,24 @@ mod tests {
 
     #[test]
     fn pressure_grows_with_depth_along_any_gravity() {
+        let lattice = Lattice::new([0.0; 2], 1.0).unwrap();
         let position = [[0.5, 0.5], [0.5, 1.5]];
-        let column = Column::new(1000.0, &[0.0, -10.0], 1.0, &position);
-        assert_eq!(column.pressure(&position[1]), 5_000.0);
-        assert_eq!(column.pressure(&position[0]), 15_000.0);
-        let column = Column::new(1000.0, &[10.0, 0.0], 1.0, &[[2.0, 0.0], [4.0, 0.0]]);
-        assert_eq!(column.pressure(&[4.0, 7.0]), 25_000.0);
+        let column = Column::new(1000.0, &[0.0, -10.0], &lattice, &position);
+        assert_eq!(column.pressure(1, &position[1]), 5_000.0);
+        assert_eq!(column.pressure(0, &position[0]), 15_000.0);
+        let position = [[2.5, 0.5], [3.5, 0.5], [3.5, 1.5]];
+        let column = Column::new(1000.0, &[10.0, 0.0], &lattice, &position);
+        assert_eq!(column.pressure(2, &position[2]), 15_000.0);
+    }
+
+    #[test]
+    fn every_body_of_water_has_its_own_surface() {
+        let lattice = Lattice::new([0.0; 2], 1.0).unwrap();
+        // A column of two cells, a gap of one, a pool of one cell; corners do not connect.
+        let position = [[0.5, 0.5], [0.5, 1.5], [2.5, 0.5], [1.5, 2.5]];
+        let column = Column::new(1000.0, &[0.0, -10.0], &lattice, &position);
+        let pressure: Vec<f64> =
+            position.iter().enumerate().map(|(i, x)| column.pressure(i, x)).collect();
+        assert_eq!(pressure, [15_000.0, 5_000.0, 5_000.0, 5_000.0]);
     }
 }

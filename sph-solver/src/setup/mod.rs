@@ -4,6 +4,7 @@
 //! the box around the first fluid region. Walls flush with that region lie on cell sides, half a
 //! spacing from the last layer of fluid. Every particle has the mass ρ0 · spacing^D.
 
+mod bodies;
 mod constants;
 mod domain;
 mod estimate;
@@ -11,12 +12,14 @@ mod fluid;
 mod geometry;
 mod memory;
 mod neighbours;
+mod notes;
 mod overlap;
 mod particles;
 mod positions;
 mod report;
 mod sampling;
 mod shapes;
+mod volume;
 mod walls;
 
 pub use constants::{Constants, StepLimit, expected_speed, time_step};
@@ -27,14 +30,14 @@ pub use positions::{BYTES_PER_POSITION, Positions};
 pub(crate) use report::grouped;
 pub use report::{
     BYTES_PER_FLUID_PARTICLE, BYTES_PER_WALL_PARTICLE, CheckReport, MeshSummary,
-    PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SolidCount,
+    PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SolidCount, VolumeOfFluid,
 };
 pub use sampling::{BlockKind, Sample};
 
 use crate::eos::EquationOfState;
 use crate::model::SolidModel;
 use crate::scene::{self, At, Equation, ErrorKind, Fluid, Kernel, Region, Scene, SceneError};
-use fluid::{Column, Filling};
+use fluid::Filling;
 use shapes::Shapes;
 use sph_geometry::{Aabb, Lattice, LatticeError, lattice_inside};
 use sph_kernels::{Kernel as _, WendlandC2};
@@ -52,6 +55,9 @@ pub struct Setup<const D: usize> {
     pub expected_speed: f64,
     /// Largest speed at the start, m/s.
     pub initial_speed: f64,
+    /// Volume of the regions of fluid, m³ (m² in two dimensions).
+    pub volume_of_regions: f64,
+    notes_on_probes: Vec<String>,
     meshes: Vec<MeshSummary>,
 }
 
@@ -76,6 +82,8 @@ impl<const D: usize> Setup<D> {
         }
         let filling = Filling::new(scene, fluid, position, ends)?;
         domain::check(scene, fluid, &domain, &filling.position)?;
+        let support = Geometry::<D>::support(scene);
+        let notes_on_probes = notes::on_probes(scene, &domain, &solids, &filling.position, support);
         let gravity = scene.gravity();
         let initial_speed = filling.largest_speed();
         let expected_speed = expected_speed(&gravity, height(&gravity, &fluid_box), initial_speed);
@@ -109,8 +117,7 @@ impl<const D: usize> Setup<D> {
             on_lost: numerics.on_lost,
         };
         let mass = density0 * spacing.powi(D as i32);
-        let column = Column::new(density0, &gravity, spacing, &filling.position);
-        let mut particles = filling.finish(scene, fluid, &equation_of_state, &column, mass)?;
+        let mut particles = filling.finish(scene, fluid, &equation_of_state, &lattice, mass)?;
         walls::add_walls(scene, &solids, &lattice, &constants, &mut particles)?;
         Ok(Self {
             particles,
@@ -118,8 +125,24 @@ impl<const D: usize> Setup<D> {
             solids: walls::models(scene, &solids),
             expected_speed,
             initial_speed,
+            volume_of_regions: volume::of_regions(&regions),
+            notes_on_probes,
             meshes,
         })
+    }
+}
+
+impl<const D: usize> Setup<D> {
+    /// Volume that the fluid particles hold at rest, m³ (m² in two dimensions).
+    pub fn volume(&self) -> f64 {
+        self.particles.of_kind(0).len() as f64 * self.constants.spacing.powi(D as i32)
+    }
+
+    /// Memory of a run on all ranks together, bytes.
+    pub fn memory_bytes(&self) -> f64 {
+        let fluid = self.particles.of_kind(0).len();
+        let walls = self.particles.len() - fluid;
+        fluid as f64 * BYTES_PER_FLUID_PARTICLE + walls as f64 * BYTES_PER_WALL_PARTICLE
     }
 }
 
@@ -170,7 +193,7 @@ fn fluid_box<const D: usize>(
     let needed = bytes * cells;
     if let Some(available) = memory::available().filter(|available| needed > *available) {
         let [needed, available] = [needed, available].map(memory::gibibytes);
-        let why = format!("they need {needed} at the very least, and {available} are free here");
+        let why = format!("they need about {needed}, and {available} are free here");
         return Err(too_many(scene, cells, &why));
     }
     Ok(all)

@@ -32,6 +32,8 @@ pub struct CheckReport {
     pub bounding_box: [Vec<f64>; 2],
     /// Box that particles may be in, m.
     pub domain: [Vec<f64>; 2],
+    /// Volume of the fluid.
+    pub volume: VolumeOfFluid,
     /// Initial particle distance, m.
     pub spacing: f64,
     /// Smoothing length, m.
@@ -62,8 +64,8 @@ pub struct CheckReport {
     pub ranks: usize,
     /// Meshes in use.
     pub meshes: Vec<MeshSummary>,
-    /// What is allowed but deserves a look.
-    pub warnings: Vec<String>,
+    /// What is allowed but deserves a look; a run says the same.
+    pub notes: Vec<String>,
 }
 
 /// Particles by kind.
@@ -75,6 +77,15 @@ pub struct ParticleCounts {
     pub fluid: usize,
     /// Of each solid, in the order of the scene.
     pub solids: Vec<SolidCount>,
+}
+
+/// Volume of the fluid, m³ (m² in two dimensions).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct VolumeOfFluid {
+    /// Of the regions of the scene, measured to about a thousandth; exact for boxes.
+    pub regions: f64,
+    /// Of the particles that fill them.
+    pub particles: f64,
 }
 
 /// Wall particles of a solid.
@@ -114,6 +125,10 @@ impl fmt::Display for CheckReport {
         for solid in &self.particles.solids {
             row(&format!("  solid {}", solid.name), grouped(solid.particles as f64))?;
         }
+        let unit = if self.dimension == 2 { "m²" } else { "m³" };
+        let VolumeOfFluid { regions, particles } = self.volume;
+        let (regions, particles) = (short(regions), short(particles));
+        row("volume", format!("{particles} {unit} of particles for regions of {regions} {unit}"))?;
         row("bounding box", corners(&self.bounding_box))?;
         row("domain", corners(&self.domain))?;
         row("spacing", format!("{} m", short(self.spacing)))?;
@@ -155,8 +170,8 @@ impl fmt::Display for CheckReport {
                 format!("{path}: {triangles} triangles, {volume} m³, {corners}; {}", mesh.defects),
             )?;
         }
-        for warning in &self.warnings {
-            row("note", warning.clone())?;
+        for note in &self.notes {
+            row("note", note.clone())?;
         }
         Ok(())
     }

@@ -205,7 +205,7 @@ fn the_report_counts_and_warns() {
         report.memory_bytes,
         200.0 * BYTES_PER_FLUID_PARTICLE + 452.0 * BYTES_PER_WALL_PARTICLE
     );
-    assert!(report.warnings[0].contains("only 2.2 times"), "{:?}", report.warnings);
+    assert!(report.notes[0].contains("only 2.2 times"), "{:?}", report.notes);
     let text = report.to_string();
     for part in ["solid tank", "452", "limited by sound", "note "] {
         assert!(text.contains(part), "{text}");

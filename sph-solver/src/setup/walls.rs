@@ -3,7 +3,7 @@
 use super::constants::Constants;
 use super::particles::Particles;
 use super::shapes::Shapes;
-use super::{LARGEST, MOST_PARTICLES, lattice_error, too_many};
+use super::{LARGEST, MOST_PARTICLES, lattice_error, memory, too_many};
 use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
 use sph_geometry::{
@@ -97,6 +97,12 @@ pub fn add_walls<const D: usize>(
     let total = particles.len() + walls.positions.len();
     if total as f64 > MOST_PARTICLES {
         return Err(too_many(scene, total as f64, LARGEST));
+    }
+    let needed = memory::to_set_up::<D>(walls.positions.len() as f64);
+    if let Some(available) = memory::available().filter(|available| needed > *available) {
+        let [needed, available] = [needed, available].map(memory::gibibytes);
+        let why = format!("its walls need {needed}, and {available} are free here");
+        return Err(too_many(scene, total as f64, &why));
     }
     // Solid by solid; within a solid in the order of the lattice.
     let mut order: Vec<usize> = (0..walls.positions.len()).collect();

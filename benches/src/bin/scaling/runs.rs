@@ -6,7 +6,7 @@ use sph_decomp::scale::{
     Layout, Network, Prediction, RankLoad, RankTraffic, Rates, Rebuilds, StepTime, Variant,
 };
 use sph_solver::partition::{Costs, Field};
-use sph_solver::run::{RunOptions, Summary, World, run};
+use sph_solver::run::{Existing, RunOptions, Summary, World, run};
 use sph_solver::scene::Scene;
 use std::path::PathBuf;
 
@@ -79,9 +79,8 @@ fn simulate(scene: &Scene, ranks: usize, end: f64) -> Outcome<(Summary, f64)> {
         end_time: Some(end),
         ranks: Some(ranks),
         threads: Some(1),
-        checkpoint_every: None,
-        resume: false,
-        blocking: false,
+        existing: Existing::Overwrite,
+        ..RunOptions::default()
     };
     let summary = run(&World::Process, scene, &options, &|_| ())?;
     let core = summary.cpu_seconds.unwrap_or(f64::NAN);
