@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn values_survive_a_checkpoint() {
         let Identity { particles, settings } =
-            identity(&["fluid.water.velocity=[\"x = y\", \"0\"]"]);
+            identity(&["fluid.water.velocity=[\"x - y\", \"0\"]"]);
         for values in [particles, settings] {
             assert_eq!(Values::from_text(&values.to_text()), values);
         }
