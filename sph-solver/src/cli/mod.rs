@@ -150,7 +150,9 @@ mod tests {
         {
             assert_eq!(duration(text), Ok(Duration::from_secs_f64(seconds)), "{text}");
         }
-        for text in ["", "0", "-1", "nan", "inf", "1h30", "30m1h", "h", "1.5h", "99999999999999d"] {
+        for text in
+            ["", "0", "-1", "nan", "inf", "1h30", "30m1h", "h", "1.5h", "999999999999999999d"]
+        {
             assert!(duration(text).is_err(), "{text}");
         }
     }
