@@ -36,11 +36,11 @@ fn gauges_read_what_is_there() {
     let first = |name: &str| results.table(&format!("probe-{name}")).rows[0].clone();
     assert_eq!(results.table("probe-gauge").titles, ["time [s]", "level [m]"]);
     assert_eq!(results.table("probe-right").titles, ["time [s]", "flow [m2/s]"]);
-    // A quarter of the spacing.
+    // Within a quarter of the spacing; the water is compressed by a thousandth.
     assert_near(first("gauge")[1], 0.4, 0.005);
     assert!(first("beside")[1].is_nan());
-    assert_near(first("right")[1], 0.4 * 2.0, 1e-9);
-    assert_near(first("left")[1], -0.4 * 2.0, 1e-9);
+    assert_near(first("right")[1], 0.4 * 2.0, 0.002);
+    assert_near(first("left")[1], -0.4 * 2.0, 0.002);
     // Depths of 0.2 and 0.1 m; at the wall the interpolation is one-sided.
     assert_near(first("sensor")[1], 9810.0 * 0.2, 9810.0 * 0.001);
     assert_eq!(first("sensor")[2], 1.0);
