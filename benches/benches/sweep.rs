@@ -6,7 +6,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use sph_benches::{SweepCase, density_terms, force_terms};
 use sph_kernels::Real;
-use sph_solver::terms::Acceleration;
+use sph_solver::terms::{Acceleration, DensityRate};
 use std::hint::black_box;
 
 fn precision<S: Real>(criterion: &mut Criterion, name: &str) {
@@ -16,7 +16,7 @@ fn precision<S: Real>(criterion: &mut Criterion, name: &str) {
         let case = SweepCase::<S>::new(count, 3.0, 0.1);
         let radius = case.scale.support_radius;
         group.throughput(Throughput::Elements(case.true_pairs));
-        let mut rates = vec![0.0; case.len()];
+        let mut rates = vec![DensityRate::default(); case.len()];
         group.bench_function(BenchmarkId::new("density", count), |bencher| {
             bencher.iter(|| case.density_sweep(density_terms(radius), black_box(&mut rates), None));
         });

@@ -8,14 +8,18 @@ use crate::SweepCase;
 use sph_kernels::{Lanes, Real, Vectorized};
 use sph_neighbors::{CLUSTER, ClusterList};
 use sph_solver::records::Record;
-use sph_solver::terms::Acceleration;
+use sph_solver::terms::{Acceleration, DensityRate};
 
 /// Particles per entry into vector code, as in the solver.
 const GRAIN: usize = 256;
 
-/// dρ/dt = ρ_i Σ (v_i − v_j)·∇W V + 2 δ h c0 Σ Ψ F V.
-pub fn density_rates<S: Real>(case: &SweepCase<S>, strength: f64, gradient: [f64; 3]) -> Vec<f64> {
-    let mut rates = vec![0.0; case.len()];
+/// dρ/dt = ρ_i Σ (v_i − v_j)·∇W V + 2 δ h c0 Σ Ψ F V, and the share of the support that is filled.
+pub fn density_rates<S: Real>(
+    case: &SweepCase<S>,
+    strength: f64,
+    gradient: [f64; 3],
+) -> Vec<DensityRate> {
+    let mut rates = vec![DensityRate::default(); case.len()];
     for (k, rates) in rates.chunks_mut(GRAIN).enumerate() {
         let first = k * GRAIN;
         S::dispatch(Density {
@@ -60,7 +64,7 @@ struct Density<'a, S> {
     radius: f64,
     strength: f64,
     gradient: [f64; 3],
-    rates: &'a mut [f64],
+    rates: &'a mut [DensityRate],
 }
 
 struct Force<'a, S> {
@@ -105,7 +109,8 @@ impl<S: Real> Vectorized for Density<'_, S> {
 
     #[inline(always)]
     fn run<L: Lanes<Scalar = S>>(self) {
-        let per_unit: L = lanes(1.0 / self.unit);
+        let (unit, per_unit): (L, L) = (lanes(self.unit), lanes(1.0 / self.unit));
+        let metres = unit * lanes(-1.0 / 3.0);
         let to_q: L = lanes(self.unit / self.radius);
         let one: L = lanes(1.0);
         let [gx, gy, gz] = self.gradient.map(lanes::<L>);
@@ -121,7 +126,7 @@ impl<S: Real> Vectorized for Density<'_, S> {
                 let v = strength.mul_add(gy, v);
                 let w = strength.mul_add(gz, w);
                 let strength = strength * per_unit;
-                let mut sum = L::zero();
+                let (mut sum, mut filled) = (L::zero(), L::zero());
                 for &j in list.sources(number) {
                     let [xj, yj, zj, uj, vj, wj, deviation_j, weight] =
                         records[j as usize].map(L::splat);
@@ -134,10 +139,12 @@ impl<S: Real> Vectorized for Density<'_, S> {
                     let flux = (w - wj).mul_add(dz, (v - vj).mul_add(dy, (u - uj) * dx));
                     let coefficient = strength.mul_add(deviation_j - deviation, flux);
                     sum = coefficient.mul_add(slope, sum);
+                    filled = (distance2 * metres).mul_add(slope, filled);
                 }
+                let (sum, filled) = (numbers(sum), numbers(filled));
                 let rates = self.rates[own.clone()].iter_mut().zip(&self.density[own]);
-                for ((rate, density), sum) in rates.zip(numbers(sum)) {
-                    *rate = sum * density;
+                for (l, (rate, density)) in rates.enumerate() {
+                    *rate = DensityRate { rate: sum[l] * density, fluid: filled[l], wall: 0.0 };
                 }
             }
         }

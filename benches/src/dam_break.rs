@@ -2,18 +2,20 @@
 
 use bytemuck::Pod;
 use sph_decomp::Communicator;
+use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Shape, Solid};
 use sph_kernels::{Real, WendlandC2};
 use sph_solver::eos::EquationOfState;
 use sph_solver::error::RunError;
-use sph_solver::model::{Model, OnLost};
-use sph_solver::physics::Terms;
+use sph_solver::model::{Model, OnLost, SolidModel};
+use sph_solver::scheme::Scheme;
 use sph_solver::simulation::Simulation;
-use sph_solver::state::{FLUID, State};
+use sph_solver::state::State;
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    ArtificialViscosity, Continuity, DeltaContinuity, OneSidedRiemannWall, SymmetricPressure,
+    ArtificialViscosity, DeltaContinuity, SymmetricPressure, WallContinuity, WallPressure,
 };
 use sph_solver::timestep::StepLimits;
+use sph_solver::walls::WallElements;
 
 const GRAVITY: f64 = 9.81;
 const DENSITY: f64 = 1000.0;
@@ -21,14 +23,6 @@ const DENSITY: f64 = 1000.0;
 const BOX: [f64; 3] = [1.6, 0.67, 0.4];
 /// Water column in a corner of it, m.
 const COLUMN: [f64; 3] = [0.4, 0.67, 0.3];
-
-/// Terms of the dam break: fluid and walls in both passes.
-pub type BoxTerms = Terms<
-    DeltaContinuity<3>,
-    (SymmetricPressure, ArtificialViscosity),
-    Continuity,
-    OneSidedRiemannWall<3>,
->;
 
 /// A water column in a box: 1.6 × 0.67 × 0.4 m, column 0.4 × 0.67 × 0.3 m, walls as thick as the
 /// support radius.
@@ -70,68 +64,69 @@ impl DamBreak {
                 kinematic_viscosity: 0.0,
             },
             domain: ([-margin; 3], [BOX[0] + margin, BOX[1] + margin, 3.0 * BOX[2]]),
+            periods: [None; 3],
+            lowest_pressure: f64::NEG_INFINITY,
+            closed: false,
             on_lost: OnLost::Remove,
+            solids: vec![SolidModel { name: "box".into(), center: [0.0; 3], slips: true }],
         }
     }
 
     /// δ-SPH with artificial viscosity 0.1 and density diffusion 0.1.
-    pub fn physics(&self) -> BoxTerms {
+    pub fn scheme<S: Real>(&self) -> Scheme<3, S> {
         let model = self.model();
         let (h, c0) = (model.limits.smoothing_length, model.limits.sound_speed);
-        Terms {
-            fluid_density: DeltaContinuity {
-                strength: 0.1 * h * c0,
-                hydrostatic_gradient: model.gravity.map(|g| g * DENSITY / (c0 * c0)),
-            },
-            fluid_force: (
-                SymmetricPressure,
-                ArtificialViscosity { strength: 0.1 * h * c0 * DENSITY, softening: 0.01 * h * h },
-            ),
-            wall_density: Continuity,
-            wall_force: OneSidedRiemannWall { gravity: model.gravity, sound_speed: c0 },
-        }
+        let density = DeltaContinuity {
+            strength: 0.1 * h * c0,
+            hydrostatic_gradient: model.gravity.map(|g| g * DENSITY / (c0 * c0)),
+        };
+        let friction =
+            ArtificialViscosity { strength: 0.1 * h * c0 * DENSITY, softening: 0.01 * h * h };
+        Scheme::new::<WendlandC2>(density, (SymmetricPressure, friction))
+            .walls(WallContinuity, WallPressure { sound_speed: c0 })
+            .build()
     }
 
-    /// All particles.
-    pub fn particles(&self) -> State<3> {
+    /// The water.
+    pub fn fluid(&self) -> State<3> {
         let dp = self.spacing;
-        let cells = |lengths: [f64; 3]| lengths.map(|l| (l / dp).round() as i32);
-        let (tank, column) = (cells(BOX), cells(COLUMN));
-        let layers = self.support.ceil() as i32;
-        let within =
-            |cell: [i32; 3], size: [i32; 3]| (0..3).all(|k| (0..size[k]).contains(&cell[k]));
+        let column = COLUMN.map(|l| (l / dp).round() as i32);
+        let eos = self.model().equation_of_state;
+        let rate =
+            if self.collapsing { 2.0 * (GRAVITY * COLUMN[2]).sqrt() / COLUMN[0] } else { 0.0 };
         let mut state = State::default();
-        for z in -layers..tank[2] {
-            for y in -layers..tank[1] + layers {
-                for x in -layers..tank[0] + layers {
-                    let cell = [x, y, z];
-                    if within(cell, column) {
-                        self.add(&mut state, cell, FLUID);
-                    } else if !within(cell, tank) {
-                        self.add(&mut state, cell, 1);
-                    }
+        for z in 0..column[2] {
+            for y in 0..column[1] {
+                for x in 0..column[0] {
+                    let x = [x, y, z].map(|i| (f64::from(i) + 0.5) * dp);
+                    let depth = (COLUMN[2] - x[2]).max(0.0);
+                    state.id.push(state.id.len() as u64);
+                    state.mass.push(DENSITY * dp.powi(3));
+                    state.density.push(eos.density(DENSITY * GRAVITY * depth));
+                    state.position.push(x);
+                    state.velocity.push([rate * x[0], 0.0, -rate * x[2]]);
                 }
             }
         }
         state
     }
 
-    fn add(&self, state: &mut State<3>, cell: [i32; 3], kind: u16) {
+    /// The walls: a box with an open top.
+    pub fn walls(&self) -> WallElements<3> {
         let dp = self.spacing;
-        let x = cell.map(|i| (f64::from(i) + 0.5) * dp);
-        let fluid = kind == FLUID;
-        let depth = if fluid { (COLUMN[2] - x[2]).max(0.0) } else { 0.0 };
-        let rate = if fluid && self.collapsing {
-            2.0 * (GRAVITY * COLUMN[2]).sqrt() / COLUMN[0]
-        } else {
-            0.0
-        };
-        state.id.push(state.id.len() as u64);
-        state.kind.push(kind);
-        state.mass.push(DENSITY * dp.powi(3));
-        state.density.push(self.model().equation_of_state.density(DENSITY * GRAVITY * depth));
-        state.position.push(x);
-        state.velocity.push([rate * x[0], 0.0, -rate * x[2]]);
+        let size = BOX.map(|l| (l / dp).round() * dp);
+        let high = [size[0], size[1], 2.0 * size[2]];
+        let shape = Shape::cuboid([0.0; 3], high).expect("a box");
+        let tank = Solid::new("box", shape, FluidSide::Inside);
+        let lattice = Lattice::new([0.0; 3], dp).expect("a lattice");
+        let domain = Domain::new(Aabb::new([0.0; 3], size));
+        let mut walls =
+            WallElements::of_solids(&[tank], &lattice, self.support * dp, &domain, 1 << 40)
+                .expect("walls");
+        let below: Vec<u32> =
+            (0..walls.len() as u32).filter(|&i| walls.position[i as usize][2] < size[2]).collect();
+        walls.keep(&below);
+        walls
     }
 
     /// Wall particles in the layer next to the inside of the box.
@@ -145,9 +140,10 @@ impl DamBreak {
         &self,
         comm: &'a dyn Communicator,
         threads: usize,
-    ) -> Result<Simulation<'a, 3, S, WendlandC2, BoxTerms>, RunError> {
+    ) -> Result<Simulation<'a, 3, S>, RunError> {
         let team = Team::new(threads)?;
-        Simulation::new(comm, team, self.model(), self.physics(), self.particles(), None)
+        let (fluid, walls) = (self.fluid(), self.walls());
+        Simulation::new(comm, team, self.model(), self.scheme(), fluid, walls, None)
     }
 }
 
@@ -174,7 +170,7 @@ mod tests {
     fn the_spacing_gives_the_count() {
         let spacing = DamBreak::spacing_for(1000);
         let case = DamBreak { spacing, support: 3.0, skin: 0.2, collapsing: false };
-        let fluid = case.particles().kind.iter().filter(|&&kind| kind == FLUID).count();
+        let fluid = case.fluid().len();
         assert!((900..1100).contains(&fluid), "{fluid}");
     }
 }

@@ -20,7 +20,7 @@ mod sweep_case;
 
 pub use bandwidth::{Triad, triad_bytes};
 pub use clock::{Clock, Spent, median};
-pub use dam_break::{BoxTerms, DamBreak};
+pub use dam_break::DamBreak;
 pub use lattice::{Lattice, Noise};
 pub use memory::peak_memory;
 pub use peak::fma_flops;

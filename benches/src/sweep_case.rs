@@ -4,13 +4,16 @@ use crate::{Lattice, Noise};
 use rayon::prelude::*;
 use sph_kernels::{Real, WendlandC2};
 use sph_neighbors::{CellList, ClusterList, Clusters, Grid};
+use sph_solver::kernel_shape::KernelShape;
 use sph_solver::records::{Encoder, Record, record};
-use sph_solver::sweep::{Neighbors, PairScale, sweep};
+use sph_solver::space::{Open, PairScale};
+use sph_solver::sweep::{Neighbors, sweep};
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    Acceleration, ArtificialViscosity, DeltaContinuity, Deviation, PairTerm, Pressure, Quantity,
-    SymmetricPressure,
+    Acceleration, ArtificialViscosity, DeltaContinuity, DensityRate, Deviation, PairTerm, Pressure,
+    Quantity, SymmetricPressure,
 };
+use std::marker::PhantomData;
 
 /// Density pass of δ-SPH.
 pub type DensityTerms = DeltaContinuity<3>;
@@ -45,7 +48,7 @@ pub fn inviscid_force_terms() -> (SymmetricPressure, ()) {
 #[derive(Debug, Clone)]
 pub struct SweepCase<S> {
     /// Scale of the pairs.
-    pub scale: PairScale,
+    pub scale: PairScale<3>,
     /// Records with density deviations.
     pub deviation: Vec<Record<S>>,
     /// Records with pressures.
@@ -56,7 +59,6 @@ pub struct SweepCase<S> {
     pub list: ClusterList,
     /// Number of list entries within the support radius.
     pub true_pairs: u64,
-    none: ClusterList,
 }
 
 impl<S: Real> SweepCase<S> {
@@ -75,16 +77,16 @@ impl<S: Real> SweepCase<S> {
         let clusters = Clusters::new(lattice.len(), &[]);
         list.rebuild(&clusters, &cells, &lattice.positions, true, reach);
         let true_pairs = list.pairs_within(&lattice.positions, &lattice.positions, true, radius);
-        let encoder = Encoder::new::<WendlandC2>(radius, 3);
+        let scale = PairScale::new(radius);
+        let encoder = Encoder::<3, S>::new(&scale, &KernelShape::of::<WendlandC2>(3));
         let mut noise = Noise::default();
         let mut case = Self {
-            scale: PairScale { unit: encoder.unit(), support_radius: radius },
+            scale,
             deviation: Vec::with_capacity(lattice.len()),
             pressure: Vec::with_capacity(lattice.len()),
             density: Vec::with_capacity(lattice.len()),
             list,
             true_pairs,
-            none: ClusterList::default(),
         };
         for x in &lattice.positions {
             let velocity: [f64; 3] = std::array::from_fn(|_| noise.symmetric());
@@ -111,8 +113,8 @@ impl<S: Real> SweepCase<S> {
     }
 
     /// Changes of density of all particles.
-    pub fn density_rates<T: PairTerm<3, Deviation>>(&self, terms: T) -> Vec<f64> {
-        let mut rates = vec![0.0; self.len()];
+    pub fn density_rates<T: PairTerm<3, Deviation>>(&self, terms: T) -> Vec<DensityRate> {
+        let mut rates = vec![DensityRate::default(); self.len()];
         self.density_sweep(terms, &mut rates, None);
         rates
     }
@@ -122,7 +124,7 @@ impl<S: Real> SweepCase<S> {
     pub fn density_sweep<T: PairTerm<3, Deviation>>(
         &self,
         terms: T,
-        rates: &mut [f64],
+        rates: &mut [DensityRate],
         team: Option<&Team>,
     ) {
         self.sweep::<Deviation, T>(&self.deviation, terms, rates, team);
@@ -153,15 +155,11 @@ impl<S: Real> SweepCase<S> {
         rates: &mut [Q::Rate<3>],
         team: Option<&Team>,
     ) {
-        let walls: Neighbors<'_, S, ()> = Neighbors { records: &[], list: &self.none, terms: () };
-        let sources = (Neighbors { records, list: &self.list, terms }, walls);
-        let clusters = self.list.clusters();
+        let metric = PhantomData::<Open>;
+        let pairs = Neighbors { records, list: &self.list, terms, metric };
         let task = |(k, (rates, density)): (usize, (&mut [Q::Rate<3>], &[f64]))| {
             let first = k * GRAIN;
-            let scale = self.scale;
-            sweep::<3, Q, WendlandC2, S, _>(
-                clusters, first, records, density, scale, &sources, rates,
-            );
+            sweep::<3, Q, WendlandC2, S, _>(first, records, density, &self.scale, &pairs, rates);
         };
         match team {
             None => {

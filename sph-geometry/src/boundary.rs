@@ -41,7 +41,11 @@ impl<const D: usize> Domain<D> {
     }
 
     /// Cells of the domain, and `margin` (m) around it along axes that do not repeat.
-    fn cells(&self, lattice: &Lattice<D>, margin: f64) -> Result<CellBox<D>, LatticeError> {
+    pub(crate) fn cells(
+        &self,
+        lattice: &Lattice<D>,
+        margin: f64,
+    ) -> Result<CellBox<D>, LatticeError> {
         let mut cells = lattice.cells("domain", &self.bounds.inflated(margin))?;
         let spacing = lattice.spacing();
         for k in (0..D).filter(|&k| self.periodic[k]) {

@@ -22,6 +22,7 @@ mod mesh;
 mod shape;
 mod solid;
 mod vector;
+mod wall_elements;
 
 pub use aabb::Aabb;
 pub use boundary::{Domain, WallParticles, free_cells, solid_at, wall_particles};
@@ -33,6 +34,7 @@ pub use mesh::{
 };
 pub use shape::{Nearest, Shape, ShapeError};
 pub use solid::{FluidSide, Solid, depth_in_solids};
+pub use wall_elements::{WallElements, wall_elements};
 
 /// Runs the programs of the README.
 #[cfg(doctest)]

@@ -25,6 +25,10 @@ pub trait Real:
     + Display
     + sealed::Sealed
 {
+    /// Units after which encoded coordinates repeat, see [`encode_coordinate`](Self::encode_coordinate):
+    /// 2³² for `f32`, 0 for `f64`, whose coordinates never do.
+    const WRAPS_AT: f64;
+
     /// Rounds to this scalar.
     fn from_f64(x: f64) -> Self;
 
@@ -56,6 +60,8 @@ pub trait Real:
 }
 
 impl Real for f32 {
+    const WRAPS_AT: f64 = 4_294_967_296.0;
+
     #[inline(always)]
     fn from_f64(x: f64) -> Self {
         x as Self
@@ -91,6 +97,8 @@ impl Real for f32 {
 }
 
 impl Real for f64 {
+    const WRAPS_AT: f64 = 0.0;
+
     #[inline(always)]
     fn from_f64(x: f64) -> Self {
         x

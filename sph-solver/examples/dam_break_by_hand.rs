@@ -3,18 +3,20 @@
 //! Run with `cargo run --release -p sph-solver --example dam_break_by_hand`.
 
 use sph_decomp::Solo;
+use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Shape, Solid};
 use sph_kernels::WendlandC2;
 use sph_solver::eos::EquationOfState;
-use sph_solver::model::{Model, OnLost};
-use sph_solver::physics::Terms;
+use sph_solver::model::{Model, OnLost, SolidModel};
 use sph_solver::run::samples::budget;
+use sph_solver::scheme::Scheme;
 use sph_solver::simulation::Simulation;
-use sph_solver::state::{FLUID, State};
+use sph_solver::state::State;
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    ArtificialViscosity, Continuity, DeltaContinuity, OneSidedRiemannWall, SymmetricPressure,
+    ArtificialViscosity, DeltaContinuity, SymmetricPressure, WallContinuity, WallPressure,
 };
 use sph_solver::timestep::StepLimits;
+use sph_solver::walls::WallElements;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A column of water, 1 m wide and 2 m high, in a tank of 4 m × 3 m.
@@ -32,56 +34,41 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         equation_of_state,
         limits: StepLimits { cfl: 1.0, smoothing_length: h, sound_speed, kinematic_viscosity: 0.0 },
         domain: ([-0.5, -0.5], [4.5, 3.5]),
+        periods: [None; 2],
+        lowest_pressure: f64::NEG_INFINITY,
+        closed: false,
         on_lost: OnLost::Stop,
+        solids: vec![SolidModel { name: "tank".into(), center: [0.0; 2], slips: true }],
     };
 
+    // The column on a lattice, under the weight of the water above.
+    let lattice = Lattice::new([0.0; 2], dp)?;
     let mut state = State::<2>::default();
-    let mut add = |x: [f64; 2], kind: u16, pressure: f64| {
+    for x in sph_geometry::fill_lattice(&Shape::cuboid([0.0; 2], column)?, &lattice)? {
+        let pressure = density0 * 9.81 * (column[1] - x[1]);
         state.id.push(state.id.len() as u64);
-        state.kind.push(kind);
         state.mass.push(density0 * dp * dp);
         state.density.push(equation_of_state.density(pressure));
         state.position.push(x);
         state.velocity.push([0.0; 2]);
-    };
-    let cells = |length: f64| (length / dp).round() as i32;
-    let centre = |i: i32| (f64::from(i) + 0.5) * dp;
-    let inside =
-        |i, j, size: [f64; 2]| (0..cells(size[0])).contains(&i) && (0..cells(size[1])).contains(&j);
-    for j in -3..cells(tank[1]) + 3 {
-        for i in -3..cells(tank[0]) + 3 {
-            let x = [centre(i), centre(j)];
-            if inside(i, j, column) {
-                add(x, FLUID, density0 * 9.81 * (column[1] - x[1]));
-            } else if !inside(i, j, tank) {
-                add(x, 1, 0.0);
-            }
-        }
     }
+    let inside = Solid::new("tank", Shape::cuboid([0.0; 2], tank)?, FluidSide::Inside);
+    let domain = Domain::new(Aabb::new([0.0; 2], tank));
+    let first_id = state.len() as u64;
+    let walls = WallElements::of_solids(&[inside], &lattice, support_radius, &domain, first_id)?;
 
-    let physics = Terms {
-        fluid_density: DeltaContinuity {
-            strength: 0.1 * h * sound_speed,
-            hydrostatic_gradient: gravity.map(|g| g * density0 / (sound_speed * sound_speed)),
-        },
-        fluid_force: (
-            SymmetricPressure,
-            ArtificialViscosity {
-                strength: 0.02 * h * sound_speed * density0,
-                softening: 0.01 * h * h,
-            },
-        ),
-        wall_density: Continuity,
-        wall_force: OneSidedRiemannWall { gravity, sound_speed },
+    let density = DeltaContinuity {
+        strength: 0.1 * h * sound_speed,
+        hydrostatic_gradient: gravity.map(|g| g * density0 / (sound_speed * sound_speed)),
     };
-    let mut simulation = Simulation::<2, f32, WendlandC2, _>::new(
-        &Solo,
-        Team::new(1)?,
-        model,
-        physics,
-        state,
-        None,
-    )?;
+    let friction = ArtificialViscosity {
+        strength: 0.02 * h * sound_speed * density0,
+        softening: 0.01 * h * h,
+    };
+    let scheme = Scheme::<2, f32>::new::<WendlandC2>(density, (SymmetricPressure, friction))
+        .walls(WallContinuity, WallPressure { sound_speed })
+        .build();
+    let mut simulation = Simulation::new(&Solo, Team::new(1)?, model, scheme, state, walls, None)?;
     let mut next = 0.0;
     while simulation.time() < 1.0 {
         let report = simulation.time() >= next;

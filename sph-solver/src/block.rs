@@ -1,6 +1,7 @@
 //! A block: the state of consecutive particles, borrowed apart so that blocks advance in parallel.
 
 use crate::records::Record;
+use sph_neighbors::Clusters;
 
 /// Columns of the owned fluid particles that a pass may change.
 #[derive(Debug)]
@@ -13,15 +14,38 @@ pub struct FluidColumns<'a, const D: usize> {
     pub density: &'a mut [f64],
     /// Masses, kg.
     pub mass: &'a [f64],
-    /// Whether a particle belongs to spray, see [`crate::spray`].
-    pub spray: &'a [bool],
+    /// ∇p/ρ as walls continue it, m/s².
+    pub pressure_gradient: &'a mut [[f64; D]],
+    /// Lowest pressures that a wall has towards them, Pa.
+    pub lowest_wall_pressure: &'a mut [f64],
+    /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
+    pub shift: &'a mut [[f64; D]],
 }
 
 impl<'a, const D: usize> FluidColumns<'a, D> {
     /// The block of all owned fluid particles.
     pub fn block<S, R>(self, rates: &'a mut [R], new: &'a mut [Record<S>]) -> Block<'a, D, S, R> {
-        let Self { position, velocity, density, mass, spray } = self;
-        Block { first: 0, position, velocity, density, mass, spray, rates, new }
+        let Self {
+            position,
+            velocity,
+            density,
+            mass,
+            pressure_gradient,
+            lowest_wall_pressure,
+            shift,
+        } = self;
+        Block {
+            first: 0,
+            position,
+            velocity,
+            density,
+            mass,
+            pressure_gradient,
+            lowest_wall_pressure,
+            shift,
+            rates,
+            new,
+        }
     }
 }
 
@@ -38,8 +62,12 @@ pub struct Block<'a, const D: usize, S, R> {
     pub density: &'a mut [f64],
     /// Masses, kg.
     pub mass: &'a [f64],
-    /// Whether a particle belongs to spray.
-    pub spray: &'a [bool],
+    /// ∇p/ρ as walls continue it, m/s².
+    pub pressure_gradient: &'a mut [[f64; D]],
+    /// Lowest pressures that a wall has towards them, Pa.
+    pub lowest_wall_pressure: &'a mut [f64],
+    /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
+    pub shift: &'a mut [[f64; D]],
     /// Results of the flux loop.
     pub rates: &'a mut [R],
     /// Records that the next pass reads.
@@ -63,22 +91,46 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
         let (velocity, velocity2) = self.velocity.split_at_mut(n);
         let (density, density2) = self.density.split_at_mut(n);
         let (mass, mass2) = self.mass.split_at(n);
-        let (spray, spray2) = self.spray.split_at(n);
+        let (gradient, gradient2) = self.pressure_gradient.split_at_mut(n);
+        let (lowest, lowest2) = self.lowest_wall_pressure.split_at_mut(n);
+        let (shift, shift2) = self.shift.split_at_mut(n.min(self.shift.len()));
         let (rates, rates2) = self.rates.split_at_mut(n);
         let (new, new2) = self.new.split_at_mut(n);
         (
-            Block { first: self.first, position, velocity, density, mass, spray, rates, new },
+            Block {
+                first: self.first,
+                position,
+                velocity,
+                density,
+                mass,
+                pressure_gradient: gradient,
+                lowest_wall_pressure: lowest,
+                shift,
+                rates,
+                new,
+            },
             Block {
                 first: self.first + n,
                 position: position2,
                 velocity: velocity2,
                 density: density2,
                 mass: mass2,
-                spray: spray2,
+                pressure_gradient: gradient2,
+                lowest_wall_pressure: lowest2,
+                shift: shift2,
                 rates: rates2,
                 new: new2,
             },
         )
+    }
+
+    /// The smallest number of particles, at least `size`, after which a cluster begins or the block
+    /// ends: cutting there computes no cluster twice.
+    pub fn cut(&self, size: usize, clusters: &Clusters) -> usize {
+        if size >= self.len() {
+            return self.len();
+        }
+        (clusters.next_start(self.first + size) - self.first).min(self.len())
     }
 
     /// The same block for a shorter time.
@@ -89,18 +141,24 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             velocity: self.velocity,
             density: self.density,
             mass: self.mass,
-            spray: self.spray,
+            pressure_gradient: self.pressure_gradient,
+            lowest_wall_pressure: self.lowest_wall_pressure,
+            shift: self.shift,
             rates: self.rates,
             new: self.new,
         }
     }
 
-    /// Pieces of `size` particles, the last one shorter.
-    pub fn pieces(&mut self, size: usize) -> impl Iterator<Item = Block<'_, D, S, R>> {
+    /// Pieces of `size` particles, each filled up to a whole cluster; the last one may be shorter.
+    pub fn pieces<'b>(
+        &'b mut self,
+        size: usize,
+        clusters: &'b Clusters,
+    ) -> impl Iterator<Item = Block<'b, D, S, R>> {
         let mut rest = Some(self.reborrow());
         std::iter::from_fn(move || {
             let block = rest.take().filter(|block| !block.is_empty())?;
-            let size = size.min(block.len());
+            let size = block.cut(size, clusters);
             let (piece, tail) = block.split_at(size);
             rest = Some(tail);
             Some(piece)
@@ -123,16 +181,20 @@ mod tests {
             velocity: &mut v,
             density: &mut d,
             mass: &m,
-            spray: &[false; 10],
+            pressure_gradient: &mut [[0.0; 2]; 10],
+            lowest_wall_pressure: &mut [0.0; 10],
+            shift: &mut [],
             rates: &mut r,
             new: &mut new,
         };
         let mut sizes = Vec::new();
-        for piece in block.pieces(4) {
+        // Clusters begin at 0, 5 and 13.
+        let clusters = Clusters::new(15, &[5]);
+        for piece in block.pieces(4, &clusters) {
             piece.density.iter_mut().for_each(|d| *d += 1.0);
             sizes.push((piece.first, piece.len()));
         }
-        assert_eq!(sizes, [(5, 4), (9, 4), (13, 2)]);
+        assert_eq!(sizes, [(5, 8), (13, 2)]);
         assert_eq!(d, vec![1.0; n]);
     }
 }

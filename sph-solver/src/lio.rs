@@ -17,12 +17,13 @@
 //! be updated as soon as its own fluxes are known, while its rates are in cache.
 
 use crate::block::{Block, FluidColumns};
+use crate::loads::Loads;
 use crate::records::Record;
 use crate::team::Team;
 use bytemuck::Pod;
 use sph_decomp::{CommError, Communicator, Exposed, Halo, HaloPlan, Parts};
 use sph_kernels::Real;
-use sph_neighbors::CLUSTER;
+use sph_neighbors::Clusters;
 
 /// Pieces of the local particles between which messages are polled.
 const POLLS: usize = 16;
@@ -34,8 +35,12 @@ pub trait Pass<const D: usize, S: Real>: Sync {
     /// What a neighbouring rank needs to know of an updated particle.
     type Message: Pod + Send + Sync;
 
-    /// Fluxes of the targets `first..first + rates.len()` from the old records.
-    fn flux(&self, first: usize, old: &[Record<S>], density: &[f64], rates: &mut [Self::Rate]);
+    /// How the targets are divided into clusters.
+    fn clusters(&self) -> &Clusters;
+
+    /// Fluxes of the targets of a block from the old records, into its rates. Returns the loads on
+    /// solids that go with them.
+    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Self::Rate>) -> Loads;
 
     /// New state of a block from its rates. `old` is indexed by particle like in `flux`.
     fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Self::Rate>) -> Extremes;
@@ -100,6 +105,26 @@ impl Extremes {
     }
 }
 
+/// What a pass leaves behind besides the new state of the particles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Largest values over the particles.
+    pub extremes: Extremes,
+    /// Loads on solids.
+    pub loads: Loads,
+}
+
+impl Outcome {
+    /// Of no particle.
+    pub const NONE: Self = Self { extremes: Extremes::NONE, loads: Loads::NONE };
+
+    /// Of both sets of particles.
+    #[must_use]
+    pub fn join(self, other: Self) -> Self {
+        Self { extremes: self.extremes.max(other.extremes), loads: self.loads.plus(other.loads) }
+    }
+}
+
 /// Who takes part in a pass and over which connection.
 pub struct Exchange<'a, M: Pod> {
     /// Ranks.
@@ -132,12 +157,14 @@ pub fn lio_pass<const D: usize, S: Real, P: Pass<D, S>>(
     records: Copies<'_, S>,
     columns: FluidColumns<'_, D>,
     rates: &mut [P::Rate],
-) -> Result<(Extremes, Exposed), CommError> {
+) -> Result<(Outcome, Exposed), CommError> {
     let Exchange { comm, halo, plan, maxima } = exchange;
     let Copies { old, new } = records;
     let (new, new_outer) = new.split_at_mut(parts.owned());
     let (mut local, mut inner) = columns.block(rates, new).split_at(parts.local);
-    let (mut of_inner, mut of_local) = (Extremes::NONE, Extremes::NONE);
+    let (mut of_inner, mut of_local) = (Outcome::NONE, Outcome::NONE);
+    // Without a neighbour nothing is under way.
+    let polls = if plan.sends().is_empty() && plan.outer() == 0 { 1 } else { POLLS };
     let old_now: &[Record<S>] = old;
     // 1. The exchange posts the receptions before it calls the first closure.
     let (received, exposed) = halo.exchange(
@@ -156,10 +183,10 @@ pub fn lio_pass<const D: usize, S: Real, P: Pass<D, S>>(
         |progress| {
             // 5. and 6. Local particles: they cannot see an outer record.
             let visible = &old_now[..parts.owned()];
-            // Whole clusters, so that none is computed twice.
-            let piece = local.len().div_ceil(POLLS).max(1).next_multiple_of(CLUSTER);
-            for mut piece in local.pieces(piece) {
-                of_local = of_local.max(team.advance(pass, visible, &mut piece));
+            let piece = local.len().div_ceil(polls).max(1);
+            for mut piece in local.pieces(piece, pass.clusters()) {
+                let outcome = team.advance(pass, visible, &mut piece);
+                of_local = std::mem::replace(&mut of_local, Outcome::NONE).join(outcome);
                 progress.poll();
             }
         },
@@ -169,5 +196,5 @@ pub fn lio_pass<const D: usize, S: Real, P: Pass<D, S>>(
     plan.unpack(received, |slot, message| {
         pass.receive(message, &mut old_outer[slot], &mut new_outer[slot]);
     });
-    Ok((of_inner.max(of_local), exposed))
+    Ok((of_inner.join(of_local), exposed))
 }

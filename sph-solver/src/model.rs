@@ -1,10 +1,8 @@
 //! The numbers of a run that every rank and every pass shares.
 
 use crate::eos::EquationOfState;
-use crate::records::Encoder;
-use crate::sweep::PairScale;
+use crate::space::PairScale;
 use crate::timestep::StepLimits;
-use sph_kernels::Kernel;
 
 /// Constants of a run in SI units; derived from the scene once and never changed.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,8 +21,28 @@ pub struct Model<const D: usize> {
     pub limits: StepLimits,
     /// Lower and upper corner of the box that particles may be in, m.
     pub domain: ([f64; D], [f64; D]),
-    /// What happens to a particle outside of it.
+    /// Lengths after which the axes repeat, from the lower corner of the domain on, m; none for an
+    /// open axis.
+    pub periods: [Option<f64>; D],
+    /// Lowest pressure of the fluid, Pa: where it would cavitate. −∞ for one that never does.
+    pub lowest_pressure: f64,
+    /// Whether the fluid fills all the space that it can be in, so that it has no free surface.
+    pub closed: bool,
+    /// What happens to a particle outside of the domain.
     pub on_lost: OnLost,
+    /// The solids by number.
+    pub solids: Vec<SolidModel<D>>,
+}
+
+/// What the passes know of a solid besides its wall elements.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolidModel<const D: usize> {
+    /// Name, for files.
+    pub name: String,
+    /// The point that moments are about, m.
+    pub center: [f64; D],
+    /// Whether the fluid slips along it.
+    pub slips: bool,
 }
 
 /// What to do with a particle that leaves the domain.
@@ -40,14 +58,14 @@ pub enum OnLost {
 const DIVERGED_MACH: f64 = 3.0;
 
 impl<const D: usize> Model<D> {
-    /// Writes records for this run with a kernel.
-    pub fn encoder<K: Kernel>(&self) -> Encoder {
-        Encoder::new::<K>(self.support_radius, D)
+    /// Scale of the pairs.
+    pub fn scale(&self) -> PairScale<D> {
+        PairScale { periods: self.periods, ..PairScale::new(self.support_radius) }
     }
 
-    /// Scale of the pairs.
-    pub fn scale<K: Kernel>(&self) -> PairScale {
-        PairScale { unit: self.encoder::<K>().unit(), support_radius: self.support_radius }
+    /// A solid by its number in the scene.
+    pub fn solid(&self, number: u16) -> Option<&SolidModel<D>> {
+        self.solids.get(usize::from(number))
     }
 
     /// Speed above which the run has diverged, m/s.
@@ -63,6 +81,9 @@ impl<const D: usize> Model<D> {
     /// Whether a point is inside the domain. NaN is outside.
     pub fn contains(&self, x: &[f64; D]) -> bool {
         let (lower, upper) = &self.domain;
-        (0..D).all(|k| lower[k] <= x[k] && x[k] <= upper[k])
+        (0..D).all(|k| match self.periods[k] {
+            Some(_) => x[k].is_finite(),
+            None => lower[k] <= x[k] && x[k] <= upper[k],
+        })
     }
 }

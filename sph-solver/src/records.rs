@@ -5,11 +5,17 @@
 //! [`Quantity`](crate::terms::Quantity) of the sweep that reads the records; `w` is the volume times
 //! all constants of the kernel's gradient, so that no pair multiplies by them.
 //!
+//! The records of [walls](crate::walls) are made once: the words of velocity hold the normal of the
+//! wall and `s` the depth below its surface.
+//!
 //! In single precision the coordinate words hold wrapping fixed-point numbers in units of
 //! `R / 2^24`. Their differences are exact wherever the particle is and whoever owns it, which a
 //! float relative to the box of a rank would not be.
 
-use sph_kernels::{Kernel, Real};
+use crate::kernel_shape::KernelShape;
+use crate::space::PairScale;
+use sph_kernels::Real;
+use std::marker::PhantomData;
 
 /// Pair data of one particle; the module documentation names the words.
 pub type Record<S> = [S; 8];
@@ -23,41 +29,35 @@ const VELOCITY: usize = 3;
 
 /// Writes records for one support radius.
 #[derive(Debug, Clone, Copy)]
-pub struct Encoder {
-    unit: f64,
+pub struct Encoder<const D: usize, S> {
+    coordinate_units: [f64; D],
     weight_per_volume: f64,
+    scalar: PhantomData<S>,
 }
 
-impl Encoder {
-    /// For pairs with support radius `support_radius` (m) in `dimension` dimensions.
-    pub fn new<K: Kernel>(support_radius: f64, dimension: usize) -> Self {
-        let unit = support_radius / f64::from(1u32 << 24);
-        let gradient = K::norm(dimension) * K::SLOPE_FACTOR;
-        let weight_per_volume = unit * gradient * support_radius.powi(-(dimension as i32) - 2);
-        Self { unit, weight_per_volume }
-    }
-
-    /// Metres per unit of coordinate differences.
-    pub fn unit(&self) -> f64 {
-        self.unit
+impl<const D: usize, S: Real> Encoder<D, S> {
+    /// For pairs of this scale with a kernel.
+    pub fn new(scale: &PairScale<D>, kernel: &KernelShape) -> Self {
+        let PairScale { unit, support_radius, .. } = *scale;
+        Self {
+            coordinate_units: std::array::from_fn(|axis| scale.coordinate_unit::<S>(axis)),
+            weight_per_volume: unit * kernel.gradient * support_radius.powi(-(D as i32) - 2),
+            scalar: PhantomData,
+        }
     }
 
     /// The weight of a volume (m^D).
     #[inline]
-    pub fn weight<S: Real>(&self, volume: f64) -> S {
+    pub fn weight(&self, volume: f64) -> S {
         S::from_f64(volume * self.weight_per_volume)
     }
 
     /// The words of place and motion.
     #[inline]
-    pub fn motion<const D: usize, S: Real>(
-        &self,
-        position: &[f64; D],
-        velocity: &[f64; D],
-    ) -> [S; 6] {
+    pub fn motion(&self, position: &[f64; D], velocity: &[f64; D]) -> [S; 6] {
         let mut words = [S::from_f64(0.0); 6];
         for k in 0..D {
-            words[k] = S::encode_coordinate(position[k], self.unit);
+            words[k] = S::encode_coordinate(position[k], self.coordinate_units[k]);
             words[VELOCITY + k] = S::from_f64(velocity[k]);
         }
         words

@@ -2,19 +2,22 @@
 
 use crate::error::RunError;
 use crate::lio::{Copies, Exchange, Extremes, lio_pass};
+use crate::loads::{LoadScale, Loads};
 use crate::model::{Model, OnLost};
 use crate::passes::{DensityPass, ForcePass, kicked};
-use crate::physics::Physics;
 use crate::rank::Rank;
+use crate::records::Encoder;
+use crate::scheme::Scheme;
+use crate::space::PairScale;
 use crate::state::State;
 use crate::team::Team;
 use crate::terms::Acceleration;
 use crate::timestep::Skin;
 use crate::timings::{Phase, Timings};
+use crate::walls::WallElements;
 use bytemuck::Pod;
 use sph_decomp::{Balancer, Collectives, Communicator, Evenness, Exposed, Load, Metered};
-use sph_kernels::{Kernel, Real};
-use std::marker::PhantomData;
+use sph_kernels::Real;
 
 /// Where a run is between two steps, and what the next step needs besides the particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,11 +78,12 @@ pub struct Counters {
 }
 
 /// One rank of a run.
-pub struct Simulation<'a, const D: usize, S: Real, K, P> {
+pub struct Simulation<'a, const D: usize, S: Real> {
     comm: Metered<&'a dyn Communicator>,
     team: Team,
     model: Model<D>,
-    physics: P,
+    scheme: Scheme<D, S>,
+    scale: PairScale<D>,
     rank: Rank<D, S>,
     clock: Clock,
     skin: Skin,
@@ -99,23 +103,22 @@ pub struct Simulation<'a, const D: usize, S: Real, K, P> {
     /// Steps and exposed communication at the last rebuild.
     at_rebuild: (u64, Exposed),
     timings: Timings,
-    kernel: PhantomData<K>,
+    /// How loads are counted, if somebody asks for them.
+    load_scale: Option<LoadScale>,
+    /// Loads of this rank's fluid in the last step.
+    loads: Loads,
 }
 
-impl<'a, const D: usize, S, K, P> Simulation<'a, D, S, K, P>
-where
-    S: Real + Pod,
-    K: Kernel,
-    P: Physics<D>,
-{
-    /// Starts from the particles in `state`, which may lie on any rank. `clock` is that of a
-    /// checkpoint, or `None` for a new run.
+impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
+    /// Starts from the particles in `state` and the walls in `elements`, which may lie on any rank.
+    /// `clock` is that of a checkpoint, or `None` for a new run.
     pub fn new(
         comm: &'a dyn Communicator,
         team: Team,
         model: Model<D>,
-        physics: P,
-        state: State<D>,
+        scheme: Scheme<D, S>,
+        mut state: State<D>,
+        elements: WallElements<D>,
         clock: Option<Clock>,
     ) -> Result<Self, RunError> {
         let start = at_start(comm, &model, &state)?;
@@ -126,12 +129,20 @@ where
             }
             None => Clock { step: 0, time: 0.0, dt: 0.0, extremes: start },
         };
+        if clock.step == 0 {
+            // As at rest: the pressure gradient carries the weight.
+            state.pressure_gradient = vec![model.gravity; state.len()];
+        }
         let skin = Skin::new(model.skin);
         Ok(Self {
             comm: Metered::new(comm),
             team,
-            physics,
-            rank: Rank::new(state),
+            scale: model.scale(),
+            rank: Rank::new(
+                state,
+                if scheme.has_walls() { elements } else { WallElements::default() },
+            ),
+            scheme,
             clock,
             skin,
             pending: clock.extremes,
@@ -146,8 +157,9 @@ where
             by_prediction: false,
             at_rebuild: (0, Exposed::default()),
             timings: Timings::default(),
+            load_scale: None,
+            loads: Loads::NONE,
             model,
-            kernel: PhantomData,
         })
     }
 
@@ -166,10 +178,10 @@ where
         Ok(Clock { extremes, ..self.clock })
     }
 
-    /// A copy of the state of the particles of this rank between two steps, fluid first: positions of the present time,
-    /// velocities half a step behind it, densities of the time before.
+    /// A copy of the state of the particles of this rank between two steps: positions of the present
+    /// time, velocities half a step behind it, densities of the time before.
     pub fn state(&self) -> State<D> {
-        self.rank.whole_state()
+        self.rank.state.clone()
     }
 
     /// Time of the present positions, s: the next step ends there.
@@ -260,6 +272,22 @@ where
         &self.rank
     }
 
+    /// From now on counts the loads on solids, with quanta of this size.
+    pub fn count_loads(&mut self, scale: LoadScale) {
+        self.load_scale = Some(scale);
+    }
+
+    /// Loads of the fluid of this rank on solids in the last step; nothing without
+    /// [`count_loads`](Self::count_loads).
+    pub fn loads(&self) -> &Loads {
+        &self.loads
+    }
+
+    /// What is summed over which neighbours.
+    pub fn scheme(&self) -> &Scheme<D, S> {
+        &self.scheme
+    }
+
     /// Number of threads of this rank.
     pub fn threads(&self) -> usize {
         self.team.threads()
@@ -282,7 +310,7 @@ where
         self.counters.steps += 1;
         let fluid = self.rank.fluid.owned();
         self.counters.particle_updates += fluid as u64;
-        self.counters.pairs += 2 * (self.rank.near_fluid.pairs() + self.rank.near_walls.pairs());
+        self.counters.pairs += 2 * self.rank.pairs();
         self.clock.step += 1;
         self.clock.time += dt;
         self.clock.dt = dt;
@@ -320,9 +348,10 @@ where
     fn renew_rank(&mut self) -> Result<Vec<(u64, [f64; D])>, RunError> {
         let review = self.balancer.review(&self.comm, self.load())?;
         let division = review.divide.then_some(review.rate);
-        let encoder = self.model.encoder::<K>();
+        let encoder = self.encoder();
         let (comm, team, model) = (&self.comm, &self.team, &self.model);
-        let gone = self.rank.rebuild(comm, team, model, &encoder, P::has_walls(), division)?;
+        let gone = self.rank.rebuild(comm, team, model, &encoder, division)?;
+        self.rank.make_room(self.scheme.shifting.is_some());
         self.at_rebuild = (self.counters.steps, self.exposed);
         Ok(gone)
     }
@@ -343,20 +372,25 @@ where
         }
     }
 
+    fn encoder(&self) -> Encoder<D, S> {
+        Encoder::new(&self.scale, &self.scheme.kernel)
+    }
+
     fn density_pass(&mut self) -> Result<Extremes, RunError> {
         let _timer = self.timings.measure(Phase::Density);
-        let rank = &mut self.rank;
-        let (fluid, wall) = self.physics.density();
+        let encoder = self.encoder();
         let extremes = self.pending.to_array();
         let mut maxima = [0.0; 10];
         maxima[..9].copy_from_slice(&extremes);
         maxima[9] = self.request.0;
-        let view = rank.passing();
-        let pass = DensityPass::<D, S, _, _, K> {
-            around: view.surroundings(fluid, wall),
+        let view = self.rank.passing();
+        let pass = DensityPass {
+            around: view.surroundings(&self.scale),
+            scheme: &self.scheme,
+            encoder,
             model: &self.model,
             dt: self.clock.dt,
-            kernel: PhantomData,
+            speed: self.clock.extremes.speed2.sqrt(),
         };
         let exchange = Exchange {
             comm: &self.comm,
@@ -374,7 +408,7 @@ where
             view.density_rate,
         )?;
         self.exposed += exposed;
-        self.pending = Extremes { fault: own.fault, ..Extremes::NONE };
+        self.pending = Extremes { fault: own.extremes.fault, ..Extremes::NONE };
         let [extremes @ .., request] = maxima;
         self.request.1 = request;
         self.reduced = Extremes::from_array(extremes);
@@ -383,15 +417,16 @@ where
 
     fn force_pass(&mut self, dt_before: f64, dt: f64) -> Result<(), RunError> {
         let _timer = self.timings.measure(Phase::Force);
-        let rank = &mut self.rank;
-        let (fluid, wall) = self.physics.force();
-        let view = rank.passing();
-        let pass = ForcePass::<D, S, _, _, K> {
-            around: view.surroundings(fluid, wall),
+        let encoder = self.encoder();
+        let view = self.rank.passing();
+        let pass = ForcePass {
+            around: view.surroundings(&self.scale),
+            scheme: &self.scheme,
+            encoder,
             model: &self.model,
+            loads: self.load_scale,
             dt_before,
             dt,
-            kernel: PhantomData,
         };
         let exchange =
             Exchange { comm: &self.comm, halo: view.force_halo, plan: view.plan, maxima: &mut [] };
@@ -402,10 +437,11 @@ where
             exchange,
             Copies { old: view.pressure, new: view.deviation },
             view.columns,
-            view.acceleration,
+            view.force_rate,
         )?;
         self.exposed += exposed;
-        self.pending = self.pending.max(own);
+        self.pending = self.pending.max(own.extremes);
+        self.loads = own.loads;
         Ok(())
     }
 
@@ -413,7 +449,12 @@ where
     /// one step old, so that their reduction could hide behind the density pass.
     fn choose_step(&mut self, extremes: Extremes) -> Result<f64, RunError> {
         let acceleration = extremes.acceleration2.sqrt();
-        self.skin.moved(self.clock.dt, &extremes);
+        // A shift is at most half of the largest speed, of the step before.
+        let moves = match self.scheme.shifting {
+            Some(_) => Extremes { speed2: 2.5 * extremes.speed2, ..extremes },
+            None => extremes,
+        };
+        self.skin.moved(self.clock.dt, &moves);
         let dt = self.model.limits.step(extremes);
         let calm = self.model.limits.step(Extremes::NONE);
         if dt.is_nan() || dt <= SMALLEST_STEP * calm {
@@ -427,7 +468,7 @@ where
         // The kick before the coming drift is not known yet; twice the last one bounds it but in
         // an impact, where a stale step is counted and harmless: the kernel's slope vanishes at R.
         let kick = acceleration * (self.clock.dt + dt);
-        self.lists_due = self.skin.would_exceed(dt, &extremes, kick);
+        self.lists_due = self.skin.would_exceed(dt, &moves, kick);
         Ok(dt)
     }
 
@@ -447,7 +488,7 @@ where
 
     /// Brings staged velocities to the full step, with the arithmetic of the force pass itself.
     fn complete(&self, mut staged: FullStep<D>, dt_before: f64) -> FullStep<D> {
-        for (v, Acceleration(a)) in staged.velocity.iter_mut().zip(&self.rank.acceleration) {
+        for (v, Acceleration(a)) in staged.velocity.iter_mut().zip(&self.rank.force_rate) {
             *v = kicked(*v, 0.5 * dt_before, *a, self.model.gravity);
         }
         staged

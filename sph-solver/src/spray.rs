@@ -1,29 +1,54 @@
-//! Spray: particles that have torn off from the body of the fluid.
+//! What the surroundings of a particle say: whether it has torn off, and whether a wall may hold it.
 //!
-//! While a particle tears off, its departing neighbours leave it with a density below ρ0. Nothing
-//! holds a drop under tension, yet without neighbours nothing restores its density either, and the
-//! missing part would later let it run deep into a wall or a pool before any pressure arises. A
-//! particle is taken for spray when fluid fills less than three tenths of the space around it that is
-//! not wall; its density is then kept at ρ0 or above. Marrone, Colagrossi, Le Touzé & Graziani
-//! (2010), J. Comput. Phys. 229, tell such particles by an eigenvalue; counting neighbours at each
-//! rebuild costs no pair loop.
+//! *Spray* is what has torn off from the body of the fluid. While a particle tears off, its departing
+//! neighbours leave it with a density below ρ0. Nothing holds a drop under tension, yet without
+//! neighbours nothing restores its density either, and the missing part would later let it run deep
+//! into a wall or a pool before any pressure arises. Its density is therefore kept at ρ0 or above.
+//! Marrone, Colagrossi, Le Touzé & Graziani (2010), J. Comput. Phys. 229, tell such particles by an
+//! eigenvalue; here it is the divergence of the positions, which the density sweep has for one
+//! multiplication a pair (Lee, Moulinec, Xu, Violeau, Laurence & Stansby 2008, J. Comput. Phys. 227).
+//!
+//! *Suction*: a wall holds on to fluid that no air can come to, and lets go of fluid at a free surface.
 
-use crate::model::Model;
-use sph_neighbors::ClusterList;
-use std::f64::consts::PI;
+use crate::terms::DensityRate;
 
-/// A flat surface fills one half, a right-angled edge of fluid one quarter.
-const FILLED: f64 = 0.3;
+/// Fluid fills less than this of the space around spray that is not wall. A flat surface fills one
+/// half, a right-angled edge of fluid one quarter.
+const SPRAY: f64 = 0.3;
 
-/// Marks the spray among the targets of the two lists.
-pub fn mark_spray<const D: usize>(
-    model: &Model<D>,
-    near_fluid: &ClusterList,
-    near_walls: &ClusterList,
-) -> Vec<bool> {
-    let ball = if D == 2 { PI } else { 4.0 / 3.0 * PI };
-    let places = ball * (model.reach() / model.spacing).powi(D as i32);
-    let walls = near_walls.counts().chain(std::iter::repeat(0));
-    let filled = |(fluid, walls)| (fluid as f64) < FILLED * (places - walls as f64);
-    near_fluid.counts().zip(walls).map(filled).collect()
+/// Fluid and walls fill more than this of the space around a particle that is away from the free
+/// surface.
+const INSIDE: f64 = 0.75;
+
+/// Whether a particle has torn off from the body of the fluid.
+#[inline]
+pub fn is_spray(around: &DensityRate) -> bool {
+    around.fluid < SPRAY * (1.0 - around.wall)
+}
+
+/// Whether a particle is away from the free surface.
+#[inline]
+pub fn is_inside(around: &DensityRate) -> bool {
+    around.fluid + around.wall > INSIDE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn around(fluid: f64, wall: f64) -> DensityRate {
+        DensityRate { rate: 0.0, fluid, wall }
+    }
+
+    #[test]
+    fn surfaces_are_no_spray_and_drops_are() {
+        assert!(!is_spray(&around(0.5, 0.0)) && !is_spray(&around(0.25, 0.5)));
+        assert!(is_spray(&around(0.1, 0.0)) && is_spray(&around(0.1, 0.5)));
+    }
+
+    #[test]
+    fn a_wall_holds_what_is_not_at_the_surface() {
+        assert!(is_inside(&around(0.5, 0.5)) && is_inside(&around(1.0, 0.0)));
+        assert!(!is_inside(&around(0.5, 0.0)) && !is_inside(&around(0.25, 0.5)));
+    }
 }

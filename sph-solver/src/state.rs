@@ -2,16 +2,11 @@
 
 use sph_decomp::Columns;
 
-/// Kind of the fluid particles; solid k of the scene has kind 1 + k.
-pub const FLUID: u16 = 0;
-
 /// Structure of arrays over particles.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct State<const D: usize> {
     /// Global id.
     pub id: Vec<u64>,
-    /// [`FLUID`] or 1 + number of the solid.
-    pub kind: Vec<u16>,
     /// Mass, kg.
     pub mass: Vec<f64>,
     /// Density, kg/m³.
@@ -20,6 +15,8 @@ pub struct State<const D: usize> {
     pub position: Vec<[f64; D]>,
     /// Velocity, m/s; half a step behind or ahead of the positions, see [`crate::passes`].
     pub velocity: Vec<[f64; D]>,
+    /// ∇p/ρ as walls continue it, m/s². A new run fills it.
+    pub pressure_gradient: Vec<[f64; D]>,
 }
 
 impl<const D: usize> State<D> {
@@ -37,11 +34,11 @@ impl<const D: usize> State<D> {
     pub fn columns(&mut self) -> impl Columns + '_ {
         (
             &mut self.id,
-            &mut self.kind,
             &mut self.mass,
             &mut self.density,
             &mut self.position,
             &mut self.velocity,
+            &mut self.pressure_gradient,
         )
     }
 
@@ -50,28 +47,18 @@ impl<const D: usize> State<D> {
         self.columns().permute(index);
     }
 
-    /// Adds copies of other particles.
-    pub fn append(&mut self, other: &Self) {
-        self.id.extend_from_slice(&other.id);
-        self.kind.extend_from_slice(&other.kind);
-        self.mass.extend_from_slice(&other.mass);
-        self.density.extend_from_slice(&other.density);
-        self.position.extend_from_slice(&other.position);
-        self.velocity.extend_from_slice(&other.velocity);
-    }
-
     /// The columns themselves, ids first.
     pub fn into_columns(self) -> StateColumns<D> {
-        (self.id, self.kind, self.mass, self.density, self.position, self.velocity)
+        (self.id, self.mass, self.density, self.position, self.velocity, self.pressure_gradient)
     }
 
     /// Back from [`into_columns`](Self::into_columns).
     pub fn from_columns(columns: StateColumns<D>) -> Self {
-        let (id, kind, mass, density, position, velocity) = columns;
-        Self { id, kind, mass, density, position, velocity }
+        let (id, mass, density, position, velocity, pressure_gradient) = columns;
+        Self { id, mass, density, position, velocity, pressure_gradient }
     }
 }
 
-/// Ids, kinds, masses, densities, positions, velocities.
+/// Ids, masses, densities, positions, velocities, pressure gradients.
 pub type StateColumns<const D: usize> =
-    (Vec<u64>, Vec<u16>, Vec<f64>, Vec<f64>, Vec<[f64; D]>, Vec<[f64; D]>);
+    (Vec<u64>, Vec<f64>, Vec<f64>, Vec<[f64; D]>, Vec<[f64; D]>, Vec<[f64; D]>);

@@ -1,87 +1,101 @@
 //! The sweep: sums pair terms over the neighbours of every target, one target a lane.
 //!
-//! One function, [`sweep`], compiled for a dimension, a kernel, a scalar and a tuple of terms. The
-//! targets of a cluster lie in the lanes; each source near the cluster is read once, as one record
-//! that is broadcast to all lanes, and adds to every target. Sources beyond the support of a target
-//! add zero to it, because the kernel's slope is zero there. So each target adds its neighbours one
-//! after the other in canonical order, and its sums depend neither on threads, nor on ranks, nor on
-//! the width of the lanes, nor on who shares its cluster.
+//! One function, [`sweep`], compiled for a dimension, a kernel, a scalar and the terms of one group
+//! of pairs. The targets of a cluster lie in the lanes; each source near the cluster is read once,
+//! as one record that is broadcast to all lanes, and adds to every target. Sources beyond the
+//! support of a target add zero to it, because the kernel's slope is zero there. So each target adds
+//! its neighbours one after the other in canonical order, and its sums depend neither on threads,
+//! nor on ranks, nor on the width of the lanes, nor on who shares its cluster.
 
 use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
-use crate::terms::{Pair, PairTerm, Quantity, Source, Target, dot, lanes};
+use crate::space::{Metric, PairScale};
+use crate::terms::{
+    BesideWall, Pair, PairTerm, Quantity, Source, Target, WallPair, WallTerm, difference, dot,
+    lanes,
+};
 use sph_kernels::{Kernel, Lanes, Real, Vectorized};
-use sph_neighbors::{CLUSTER, ClusterList, Clusters};
+use sph_neighbors::{CLUSTER, ClusterList};
 use std::array::from_fn;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Kernel and scale of the pairs.
-#[derive(Debug, Clone, Copy)]
-pub struct PairScale {
-    /// Metres per unit of coordinate differences.
-    pub unit: f64,
-    /// Support radius R, m.
-    pub support_radius: f64,
+/// Stands for a pressure without limit: what it pulls with is still finite.
+const LOWEST: f64 = -1e30;
+
+/// A group of pairs: who the sources of every target are and what a pair contributes.
+pub trait Pairs<const D: usize, Q: Quantity, S: Real>: Copy + Sync {
+    /// The sources of every cluster of targets.
+    fn list(&self) -> &ClusterList;
+
+    /// Adds the contributions to the targets of a cluster, which are the targets `own` of the sweep.
+    fn add<K: Kernel, L: Lanes<Scalar = S>>(
+        &self,
+        cluster: usize,
+        own: Range<usize>,
+        position: &[L; D],
+        target: &Target<D, L>,
+        scale: &PairScale<D>,
+        sum: &mut Q::Sum<D, L>,
+    );
 }
 
-/// One group of neighbours: where their records are, who they are, what they contribute.
+/// Moving neighbours, as the fluid: their gradients lie along the line to them.
 #[derive(Debug, Clone, Copy)]
-pub struct Neighbors<'a, S, T> {
+pub struct Neighbors<'a, S, T, M> {
     /// Records that the list points into.
     pub records: &'a [Record<S>],
     /// A list per cluster of targets.
     pub list: &'a ClusterList,
     /// Terms of this group.
     pub terms: T,
+    /// How coordinates are subtracted.
+    pub metric: PhantomData<M>,
 }
 
-/// Groups of neighbours: one, or a pair of groups whose contributions add up.
-pub trait Sources<const D: usize, Q: Quantity, S: Real>: Sync {
-    /// Adds the contributions to the targets of a cluster.
-    fn add<K: Kernel, L: Lanes<Scalar = S>>(
-        &self,
-        cluster: usize,
-        position: &[L; D],
-        target: &Target<D, L>,
-        scale: &PairScale,
-        sum: &mut Q::Sum<D, L>,
-    );
+/// What wall terms are told of the targets of a sweep.
+#[derive(Debug, Clone, Copy)]
+pub struct Beside<'a, const D: usize> {
+    /// Lowest pressure of a wall towards each target, Pa.
+    pub lowest_pressure: &'a [f64],
+    /// ∇p/ρ at each target, m/s².
+    pub pressure_gradient: &'a [[f64; D]],
 }
 
-impl<const D: usize, Q, S, A, B> Sources<D, Q, S> for (A, B)
-where
-    Q: Quantity,
-    S: Real,
-    A: Sources<D, Q, S>,
-    B: Sources<D, Q, S>,
-{
-    #[inline(always)]
-    fn add<K: Kernel, L: Lanes<Scalar = S>>(
-        &self,
-        cluster: usize,
-        position: &[L; D],
-        target: &Target<D, L>,
-        scale: &PairScale,
-        sum: &mut Q::Sum<D, L>,
-    ) {
-        self.0.add::<K, L>(cluster, position, target, scale, sum);
-        self.1.add::<K, L>(cluster, position, target, scale, sum);
-    }
+/// Elements of a wall: their records hold the normal in the words of velocity and the depth below
+/// the surface (m) in that of the quantity.
+#[derive(Debug, Clone, Copy)]
+pub struct WallNeighbors<'a, const D: usize, S, T, M> {
+    /// Records that the list points into.
+    pub records: &'a [Record<S>],
+    /// A list per cluster of targets.
+    pub list: &'a ClusterList,
+    /// Term of this group.
+    pub term: T,
+    /// The targets.
+    pub beside: Beside<'a, D>,
+    /// How coordinates are subtracted.
+    pub metric: PhantomData<M>,
 }
 
-impl<const D: usize, Q, S, T> Sources<D, Q, S> for Neighbors<'_, S, T>
+impl<const D: usize, Q, S, T, M> Pairs<D, Q, S> for Neighbors<'_, S, T, M>
 where
     Q: Quantity,
     S: Real,
     T: PairTerm<D, Q>,
+    M: Metric,
 {
+    fn list(&self) -> &ClusterList {
+        self.list
+    }
+
     #[inline(always)]
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
         cluster: usize,
+        _: Range<usize>,
         position: &[L; D],
         target: &Target<D, L>,
-        scale: &PairScale,
+        scale: &PairScale<D>,
         sum: &mut Q::Sum<D, L>,
     ) {
         if T::EMPTY {
@@ -90,11 +104,11 @@ where
         let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
         let to_q: L = lanes(scale.unit / scale.support_radius);
         // Copies, so that the constants of the terms are spread over the lanes once and not per pair.
-        let Self { records, list, terms } = *self;
+        let Self { records, list, terms, .. } = *self;
         for &j in list.sources(cluster) {
             let record = &records[j as usize];
             let offset: [L; D] =
-                from_fn(|k| L::coordinate_difference(position[k], L::splat(record[k])));
+                from_fn(|k| M::difference(position[k], L::splat(record[k]), scale, k));
             let distance2 = dot(&offset, &offset);
             let distance = distance2.sqrt();
             let weight = K::slope_shape(distance * to_q) * L::splat(record[WEIGHT]);
@@ -103,54 +117,105 @@ where
                 velocity: from_fn(|k| L::splat(record[velocity_word(k)])),
             };
             let pair = Pair { offset, distance2, distance, weight, unit, per_unit };
-            Q::add(sum, terms.coefficient(target, &source, &pair), &pair);
+            if T::CENTRAL {
+                Q::add(sum, terms.coefficient(target, &source, &pair), &pair);
+            }
+            if T::SHEARS {
+                let velocity = difference(&target.velocity, &source.velocity);
+                Q::add_shear(sum, terms.shear(target, &source, &pair), &velocity, &pair);
+            }
         }
     }
 }
 
-/// Computes `rates[k]` for target `first + k`.
+impl<const D: usize, Q, S, T, M> Pairs<D, Q, S> for WallNeighbors<'_, D, S, T, M>
+where
+    Q: Quantity,
+    S: Real,
+    T: WallTerm<D, Q>,
+    M: Metric,
+{
+    fn list(&self) -> &ClusterList {
+        self.list
+    }
+
+    #[inline(always)]
+    fn add<K: Kernel, L: Lanes<Scalar = S>>(
+        &self,
+        cluster: usize,
+        own: Range<usize>,
+        position: &[L; D],
+        target: &Target<D, L>,
+        scale: &PairScale<D>,
+        sum: &mut Q::Sum<D, L>,
+    ) {
+        let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
+        let to_q: L = lanes(scale.unit / scale.support_radius);
+        let Self { records, list, term, beside, .. } = *self;
+        let Beside { lowest_pressure, pressure_gradient } = beside;
+        let last = own.end - 1;
+        let of_lanes = |f: &dyn Fn(usize) -> f64| -> L {
+            let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f((own.start + l).min(last))));
+            L::load(&all)
+        };
+        let beside = BesideWall {
+            pressure_gradient: from_fn(|k| of_lanes(&|i| pressure_gradient[i][k])),
+            lowest_pressure: of_lanes(&|i| lowest_pressure[i].max(LOWEST)),
+        };
+        let mut total = T::zero();
+        for &j in list.sources(cluster) {
+            let record = &records[j as usize];
+            let offset: [L; D] =
+                from_fn(|k| M::difference(position[k], L::splat(record[k]), scale, k));
+            let normal: [L; D] = from_fn(|k| L::splat(record[velocity_word(k)]));
+            let distance2 = dot(&offset, &offset);
+            let weight = K::slope_shape(distance2.sqrt() * to_q) * L::splat(record[WEIGHT]);
+            let depth = L::splat(record[QUANTITY]);
+            let pair = WallPair { offset, distance2, normal, depth, weight, unit, per_unit };
+            term.add(target, &beside, &pair, &mut total);
+        }
+        *sum = term.finish(target, &total);
+    }
+}
+
+/// Computes `rates[k]` for target `first + k`. Returns whether any of them had a source at all; if
+/// none had, `rates` are left alone.
 ///
-/// * `clusters`: those of the lists in `sources`. Most efficient when the range of targets begins
-///   and ends with a cluster.
-/// * `records`: records of the targets, indexed like the clusters.
+/// * `records`: records of the targets, indexed as in the list.
 /// * `density`: kg/m³ of the targets, in order.
-/// * `sources`: groups of neighbours with their terms, usually `(fluid, walls)`. A group whose terms
-///   are `()` leaves no instruction.
+///
+/// The range of targets had better begin and end with a cluster.
 pub fn sweep<const D: usize, Q, K, S, N>(
-    clusters: &Clusters,
     first: usize,
     records: &[Record<S>],
     density: &[f64],
-    scale: PairScale,
-    sources: &N,
+    scale: &PairScale<D>,
+    pairs: &N,
     rates: &mut [Q::Rate<D>],
-) where
+) -> bool
+where
     Q: Quantity,
     K: Kernel,
     S: Real,
-    N: Sources<D, Q, S>,
+    N: Pairs<D, Q, S>,
 {
     assert_eq!(density.len(), rates.len(), "one density per target");
+    let list = pairs.list();
+    let range = first..first + rates.len();
+    if list.is_empty() || list.clusters().within(range).all(|(c, _)| list.sources(c).is_empty()) {
+        return false;
+    }
     let kernel = PhantomData::<K>;
-    S::dispatch(Chunk::<D, Q, K, S, N> {
-        clusters,
-        first,
-        records,
-        density,
-        scale,
-        sources,
-        rates,
-        kernel,
-    });
+    S::dispatch(Chunk::<D, Q, K, S, N> { first, records, density, scale, pairs, rates, kernel });
+    true
 }
 
 struct Chunk<'a, const D: usize, Q: Quantity, K, S, N> {
-    clusters: &'a Clusters,
     first: usize,
     records: &'a [Record<S>],
     density: &'a [f64],
-    scale: PairScale,
-    sources: &'a N,
+    scale: &'a PairScale<D>,
+    pairs: &'a N,
     rates: &'a mut [Q::Rate<D>],
     kernel: PhantomData<K>,
 }
@@ -160,7 +225,7 @@ where
     Q: Quantity,
     K: Kernel,
     S: Real,
-    N: Sources<D, Q, S>,
+    N: Pairs<D, Q, S>,
 {
     type Scalar = S;
     type Output = ();
@@ -169,7 +234,7 @@ where
     fn run<L: Lanes<Scalar = S>>(mut self) {
         const { assert!(CLUSTER.is_multiple_of(L::LANES)) };
         let end = self.first + self.rates.len();
-        for (cluster, targets) in self.clusters.within(self.first..end) {
+        for (cluster, targets) in self.pairs.list().clusters().within(self.first..end) {
             for start in targets.clone().step_by(L::LANES) {
                 self.lanes::<L>(cluster, start..targets.end.min(start + L::LANES));
             }
@@ -182,16 +247,20 @@ where
     Q: Quantity,
     K: Kernel,
     S: Real,
-    N: Sources<D, Q, S>,
+    N: Pairs<D, Q, S>,
 {
     /// The rates of up to so many targets as there are lanes.
     #[inline(always)]
     fn lanes<L: Lanes<Scalar = S>>(&mut self, cluster: usize, targets: Range<usize>) {
         let count = targets.len();
+        let own = targets.start - self.first..targets.end - self.first;
+        if self.pairs.list().sources(cluster).is_empty() {
+            self.rates[own].fill(Q::Rate::default());
+            return;
+        }
         // Lanes without a target repeat the last one.
         let index: [u32; CLUSTER] = from_fn(|l| (targets.start + l.min(count - 1)) as u32);
         let words = L::gather(self.records, &index);
-        let own = targets.start - self.first..targets.end - self.first;
         let density = &self.density[own.clone()];
         let of_lanes = |f: fn(f64) -> f64| -> L {
             let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f(density[l.min(count - 1)])));
@@ -205,7 +274,8 @@ where
         };
         let position: [L; D] = from_fn(|k| words[k]);
         let mut sum = Q::zero();
-        self.sources.add::<K, L>(cluster, &position, &target, &self.scale, &mut sum);
+        let targets = own.clone();
+        self.pairs.add::<K, L>(cluster, targets, &position, &target, self.scale, &mut sum);
         Q::rates(&sum, density, &mut self.rates[own]);
     }
 }

@@ -1,12 +1,12 @@
 //! The threads of a rank.
 
 use crate::block::Block;
-use crate::lio::{Extremes, Pass};
+use crate::lio::{Outcome, Pass};
 use crate::records::Record;
 use sph_kernels::Real;
 
 /// Particles that one task advances: their rates stay in cache between flux and update.
-const GRAIN: usize = 256;
+pub const GRAIN: usize = 256;
 
 /// The threads that share the work of one rank. The thread that owns the team talks to the other
 /// ranks; nothing that runs on the team does.
@@ -32,19 +32,19 @@ impl Team {
         self.pool.install(work)
     }
 
-    /// Fluxes and update of a block, task by task.
+    /// Fluxes and update of a block, task by task. Tasks end where clusters do.
     pub fn advance<const D: usize, S: Real, P: Pass<D, S>>(
         &self,
         pass: &P,
         old: &[Record<S>],
         block: &mut Block<'_, D, S, P::Rate>,
-    ) -> Extremes {
+    ) -> Outcome {
         if self.threads() == 1 {
             // On the calling thread: a hand-over per piece would only cost time.
             return block
-                .pieces(GRAIN)
+                .pieces(GRAIN, pass.clusters())
                 .map(|mut task| advance_task(pass, old, &mut task))
-                .fold(Extremes::NONE, Extremes::max);
+                .fold(Outcome::NONE, Outcome::join);
         }
         let block = block.reborrow();
         self.pool.install(|| halve(pass, old, block))
@@ -55,24 +55,24 @@ fn halve<const D: usize, S: Real, P: Pass<D, S>>(
     pass: &P,
     old: &[Record<S>],
     mut block: Block<'_, D, S, P::Rate>,
-) -> Extremes {
-    if block.len() <= GRAIN {
+) -> Outcome {
+    let middle = block.cut(block.len().div_ceil(2), pass.clusters());
+    if block.len() <= GRAIN || middle == block.len() {
         return advance_task(pass, old, &mut block);
     }
-    let middle = (block.len() / 2).next_multiple_of(GRAIN).min(block.len());
     let (left, right) = block.split_at(middle);
     let (a, b) = rayon::join(|| halve(pass, old, left), || halve(pass, old, right));
-    a.max(b)
+    a.join(b)
 }
 
 fn advance_task<const D: usize, S: Real, P: Pass<D, S>>(
     pass: &P,
     old: &[Record<S>],
     block: &mut Block<'_, D, S, P::Rate>,
-) -> Extremes {
+) -> Outcome {
     if block.is_empty() {
-        return Extremes::NONE;
+        return Outcome::NONE;
     }
-    pass.flux(block.first, old, block.density, block.rates);
-    pass.update(old, block)
+    let loads = pass.flux(old, block);
+    Outcome { extremes: pass.update(old, block), loads }
 }

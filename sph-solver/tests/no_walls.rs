@@ -2,18 +2,18 @@
 
 mod common;
 
-use common::{Case, digest};
+use common::{Case, digest, indices};
 use sph_decomp::{Communicator, ThreadRanks};
 use sph_kernels::WendlandC2;
 use sph_solver::error::RunError;
-use sph_solver::physics::Terms;
 use sph_solver::run::checkpoints::share;
 use sph_solver::run::digest::Digest;
 use sph_solver::run::samples::budget;
+use sph_solver::scheme::Scheme;
 use sph_solver::simulation::Simulation;
-use sph_solver::state::FLUID;
 use sph_solver::team::Team;
 use sph_solver::terms::{ArtificialViscosity, Continuity, SymmetricPressure};
+use sph_solver::walls::WallElements;
 
 const DROP: Case<2> = Case { column: [20, 20], tank: [20, 20], spacing: 0.05, skin: 0.1 };
 
@@ -23,32 +23,24 @@ fn fly(ranks: usize) -> (Digest, f64) {
         let mut model = DROP.model();
         model.gravity = [0.0; 2];
         model.domain = ([-10.0; 2], [10.0; 2]);
-        let mut state = DROP.particles();
-        let fluid: Vec<u32> =
-            (0..state.len() as u32).filter(|&i| state.kind[i as usize] == FLUID).collect();
-        state.keep(&fluid);
+        let mut state = DROP.fluid();
         for (v, x) in state.velocity.iter_mut().zip(&state.position) {
             *v = [3.0 - 2.0 * x[0], 1.0 + 2.0 * x[1]];
         }
-        let mine = share(&comm, state.len());
-        state.keep(&(mine.start as u32..mine.end as u32).collect::<Vec<_>>());
+        state.keep(&indices(share(&comm, state.len())));
         let h = model.limits.smoothing_length;
         let friction = ArtificialViscosity {
             strength: 0.02 * h * model.limits.sound_speed * 1000.0,
             softening: 0.01 * h * h,
         };
-        let physics = Terms {
-            fluid_density: Continuity,
-            fluid_force: (SymmetricPressure, friction),
-            wall_density: (),
-            wall_force: (),
-        };
-        let mut simulation = Simulation::<2, f64, WendlandC2, _>::new(
+        let scheme = Scheme::<2, f64>::new::<WendlandC2>(Continuity, (SymmetricPressure, friction));
+        let mut simulation = Simulation::new(
             &comm as &dyn Communicator,
             Team::new(1)?,
             model,
-            physics,
+            scheme.build(),
             state,
+            WallElements::default(),
             None,
         )?;
         let first = simulation.step(true)?.expect("a report was asked for");

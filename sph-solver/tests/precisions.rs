@@ -5,17 +5,19 @@
 //! u = sin 2πx cos 2πy f, v = −cos 2πx sin 2πy f, f = exp(−8π²νt).
 
 use sph_decomp::Solo;
+use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Shape, Solid};
 use sph_kernels::{Real, WendlandC2};
 use sph_solver::eos::EquationOfState;
-use sph_solver::model::{Model, OnLost};
-use sph_solver::physics::Terms;
+use sph_solver::model::{Model, OnLost, SolidModel};
+use sph_solver::scheme::Scheme;
 use sph_solver::simulation::Simulation;
-use sph_solver::state::{FLUID, State};
+use sph_solver::state::State;
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    Continuity, DeltaContinuity, LaminarViscosity, OneSidedRiemannWall, SymmetricPressure,
+    DeltaContinuity, LaminarViscosity, SymmetricPressure, WallContinuity, WallPressure,
 };
 use sph_solver::timestep::StepLimits;
+use sph_solver::walls::WallElements;
 use std::f64::consts::PI;
 
 const CELLS: i32 = 40;
@@ -39,25 +41,28 @@ fn particles(equation_of_state: EquationOfState, mut seed: u64) -> State<2> {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 33) as f64 / f64::from(1_u32 << 31) * 2.0 - 1.0
     };
-    for j in -3..CELLS + 3 {
-        for i in -3..CELLS + 3 {
-            let mut x = [i, j].map(|k| (f64::from(k) + 0.5) * DP);
-            let fluid = [i, j].iter().all(|k| (0..CELLS).contains(k));
-            if fluid {
-                x = x.map(|x| x + 0.1 * DP * noise());
-            }
+    for j in 0..CELLS {
+        for i in 0..CELLS {
+            let x = [i, j].map(|k| (f64::from(k) + 0.5 + 0.1 * noise()) * DP);
             // A background pressure, so that nothing is under tension.
             let waves = (4.0 * PI * x[0]).cos() + (4.0 * PI * x[1]).cos();
             let pressure = DENSITY * (2.0 + 0.25 * waves);
             state.id.push(state.id.len() as u64);
-            state.kind.push(if fluid { FLUID } else { 1 });
             state.density.push(equation_of_state.density(pressure));
             state.mass.push(state.density[state.density.len() - 1] * DP * DP);
-            state.velocity.push(if fluid { exact(x, 0.0) } else { [0.0; 2] });
+            state.velocity.push(exact(x, 0.0));
             state.position.push(x);
         }
     }
     state
+}
+
+fn walls(support_radius: f64) -> WallElements<2> {
+    let shape = Shape::cuboid([0.0; 2], [1.0; 2]).unwrap();
+    let tank = Solid::new("box", shape, FluidSide::Inside);
+    let lattice = Lattice::new([0.0; 2], DP).unwrap();
+    let domain = Domain::new(Aabb::new([0.0; 2], [1.0; 2]));
+    WallElements::of_solids(&[tank], &lattice, support_radius, &domain, 1 << 32).unwrap()
 }
 
 /// Mean difference of speeds over mean speed, at the end.
@@ -78,23 +83,23 @@ fn error<S: Real + bytemuck::Pod>(seed: u64) -> f64 {
             kinematic_viscosity: VISCOSITY / DENSITY,
         },
         domain: ([-0.2; 2], [1.2; 2]),
+        periods: [None; 2],
+        lowest_pressure: f64::NEG_INFINITY,
+        closed: true,
         on_lost: OnLost::Stop,
+        solids: vec![SolidModel { name: "box".into(), center: [0.5; 2], slips: true }],
     };
-    let friction = LaminarViscosity { dynamic_viscosity: VISCOSITY, softening: 0.01 * h * h };
-    let physics = Terms {
-        fluid_density: DeltaContinuity {
-            strength: 0.1 * h * sound_speed,
-            hydrostatic_gradient: [0.0; 2],
-        },
-        fluid_force: (SymmetricPressure, friction),
-        wall_density: Continuity,
-        // Without its dissipation, which would drag on what flows along a wall.
-        wall_force: OneSidedRiemannWall { gravity: [0.0; 2], sound_speed: 0.0 },
-    };
+    let friction = LaminarViscosity { dynamic_viscosity: VISCOSITY };
+    let density =
+        DeltaContinuity { strength: 0.1 * h * sound_speed, hydrostatic_gradient: [0.0; 2] };
+    let wall = WallPressure { sound_speed };
+    let scheme = Scheme::<2, S>::new::<WendlandC2>(density, (SymmetricPressure, friction))
+        .walls(WallContinuity, wall)
+        .build();
     let state = particles(equation_of_state, seed);
     let team = Team::new(1).unwrap();
     let mut simulation =
-        Simulation::<2, S, WendlandC2, _>::new(&Solo, team, model, physics, state, None).unwrap();
+        Simulation::new(&Solo, team, model, scheme, state, walls(support_radius), None).unwrap();
     while simulation.time() < END {
         simulation.step(false).unwrap();
     }

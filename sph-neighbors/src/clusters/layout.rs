@@ -106,6 +106,15 @@ impl Clusters {
         start..self.starts[segment + 1].min(start + CLUSTER)
     }
 
+    /// The first target at or behind `target` with which a cluster begins, or the number of targets.
+    pub fn next_start(&self, target: usize) -> usize {
+        if target >= self.targets() {
+            return self.targets();
+        }
+        let own = self.targets_of(self.containing(target));
+        if own.start == target { target } else { own.end }
+    }
+
     /// The clusters that hold targets of a range, with those of their targets that are in it.
     ///
     /// Work is divided best where clusters begin: at a break or a multiple of
@@ -167,6 +176,8 @@ mod tests {
                     prop_assert_eq!(clusters.containing(t), cluster);
                 }
                 next = some.end;
+                let start = clusters.next_start(some.start);
+                prop_assert!(start == all.start || (some.start > all.start && start == all.end));
             }
             prop_assert_eq!(next, range.end.max(range.start));
         }

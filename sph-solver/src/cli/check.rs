@@ -70,7 +70,7 @@ fn check<const D: usize>(
 }
 
 fn write<const D: usize>(path: &Path, setup: &Setup<D>) -> Result<(), IoError> {
-    let Particles { position, velocity, density, mass, kind } = &setup.particles;
+    let Particles { position, velocity, density, mass, kind, .. } = &setup.particles;
     let state = &setup.constants.equation_of_state;
     let pressure: Vec<f64> = density.iter().map(|density| state.pressure(*density)).collect();
     let ids: Vec<u64> = (0..position.len() as u64).collect();

@@ -1,66 +1,83 @@
 use crate::block::Block;
 use crate::lio::{Extremes, Pass};
+use crate::loads::Loads;
 use crate::model::Model;
 use crate::passes::Surroundings;
-use crate::records::{QUANTITY, Record, WEIGHT, motion, record};
-use crate::sweep::sweep;
-use crate::terms::{Deviation, PairTerm};
+use crate::records::{Encoder, QUANTITY, Record, WEIGHT, motion, record};
+use crate::scheme::Scheme;
+use crate::spray::{is_inside, is_spray};
+use crate::terms::{DensityRate, shift};
 use bytemuck::Pod;
-use sph_kernels::{Kernel, Real};
-use std::marker::PhantomData;
+use sph_kernels::Real;
+use sph_neighbors::Clusters;
 
 /// Denser than this multiple of ρ0 a flow is no longer weakly compressible.
 pub const DENSEST: f64 = 2.0;
 
 /// Density at the new positions; leaves the pressure in the new records.
 #[derive(Debug)]
-pub struct DensityPass<'a, const D: usize, S, F, W, K> {
-    /// Neighbours and their terms.
-    pub around: Surroundings<'a, S, F, W>,
+pub struct DensityPass<'a, const D: usize, S> {
+    /// Neighbours.
+    pub around: Surroundings<'a, D, S>,
+    /// What is summed over them.
+    pub scheme: &'a Scheme<D, S>,
+    /// Writes records.
+    pub encoder: Encoder<D, S>,
     /// Constants.
     pub model: &'a Model<D>,
     /// Step from the old density to the new one, s.
     pub dt: f64,
-    /// Kernel.
-    pub kernel: PhantomData<K>,
+    /// Largest speed of the flow, m/s.
+    pub speed: f64,
 }
 
-impl<const D: usize, S, F, W, K> Pass<D, S> for DensityPass<'_, D, S, F, W, K>
-where
-    S: Real + Pod,
-    F: PairTerm<D, Deviation>,
-    W: PairTerm<D, Deviation>,
-    K: Kernel,
-{
-    type Rate = f64;
+impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
+    type Rate = DensityRate;
     /// Pressure, weight, density deviation.
     type Message = [S; 3];
 
-    fn flux(&self, first: usize, old: &[Record<S>], density: &[f64], rates: &mut [f64]) {
-        let sources = self.around.sources(old);
-        let clusters = self.around.near_fluid.clusters();
-        let scale = self.model.scale::<K>();
-        sweep::<D, Deviation, K, S, _>(clusters, first, old, density, scale, &sources, rates);
+    fn clusters(&self) -> &Clusters {
+        self.around.near_fluid.clusters()
     }
 
-    fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, f64>) -> Extremes {
-        let (eos, encoder) = (&self.model.equation_of_state, self.model.encoder::<K>());
+    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Loads {
+        self.around.from_fluid(&*self.scheme.density, old, block);
+        if let Some(sum) = &self.scheme.wall_density {
+            self.around.from_walls(&**sum, old, block, |_, _, _| ());
+        }
+        if let Some(sum) = &self.scheme.shifting {
+            self.around.crowding(&**sum, self.scheme.wall_shifting.as_deref(), old, block);
+        }
+        Loads::NONE
+    }
+
+    fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Extremes {
+        let (eos, encoder) = (&self.model.equation_of_state, &self.encoder);
         let density0 = eos.density0();
         let mut fault = 0.0;
         let old = &old[block.first..][..block.len()];
         for (k, old) in old.iter().enumerate() {
-            let mut density = block.density[k] + self.dt * block.rates[k];
-            if block.spray[k] && density < density0 {
+            let rate = &block.rates[k];
+            let mut density = block.density[k] + self.dt * rate.rate;
+            if is_spray(rate) && density < density0 {
                 density = density0;
             }
+            block.lowest_wall_pressure[k] =
+                if is_inside(rate) { self.model.lowest_pressure } else { 0.0 };
             // Written so that NaN is a fault too.
             if !(density > 0.0 && density < DENSEST * density0) {
                 fault = 1.0;
             }
+            if let Some(crowding) = block.shift.get_mut(k) {
+                let radius = self.model.support_radius;
+                // Where there is no free surface, a gap is one that is to be closed.
+                let filled = if self.model.closed { 1.0 } else { rate.fluid + rate.wall };
+                *crowding = shift(crowding, filled, radius, self.speed);
+            }
             block.density[k] = density;
             block.new[k] = record(
                 motion(old),
-                S::from_f64(eos.pressure(density)),
+                S::from_f64(eos.pressure(density).max(self.model.lowest_pressure)),
                 encoder.weight(block.mass[k] / density),
             );
         }

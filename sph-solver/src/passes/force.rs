@@ -1,27 +1,33 @@
 use crate::block::Block;
 use crate::lio::{Extremes, Pass};
+use crate::loads::{LoadScale, Loads, Part};
 use crate::model::Model;
 use crate::passes::Surroundings;
-use crate::records::{QUANTITY, Record, WEIGHT, record};
-use crate::sweep::sweep;
-use crate::terms::{Acceleration, PairTerm, Pressure};
+use crate::records::{Encoder, QUANTITY, Record, WEIGHT, record};
+use crate::scheme::Scheme;
+use crate::space;
+use crate::terms::Acceleration;
 use bytemuck::Pod;
-use sph_kernels::{Kernel, Real};
-use std::marker::PhantomData;
+use sph_kernels::Real;
+use sph_neighbors::Clusters;
 
 /// Forces, the kicks on both sides of them and the drift to the next positions.
 #[derive(Debug)]
-pub struct ForcePass<'a, const D: usize, S, F, W, K> {
-    /// Neighbours and their terms.
-    pub around: Surroundings<'a, S, F, W>,
+pub struct ForcePass<'a, const D: usize, S> {
+    /// Neighbours.
+    pub around: Surroundings<'a, D, S>,
+    /// What is summed over them.
+    pub scheme: &'a Scheme<D, S>,
+    /// Writes records.
+    pub encoder: Encoder<D, S>,
     /// Constants.
     pub model: &'a Model<D>,
+    /// How loads on solids are counted; none when nobody asks for them.
+    pub loads: Option<LoadScale>,
     /// Step that ends here, s.
     pub dt_before: f64,
     /// Step that begins here, s.
     pub dt: f64,
-    /// Kernel.
-    pub kernel: PhantomData<K>,
 }
 
 /// `v + dt (a + g)`: one kick, used for every half step so that all of them round alike.
@@ -30,33 +36,74 @@ pub fn kicked<const D: usize>(v: [f64; D], dt: f64, a: [f64; D], g: [f64; D]) ->
     std::array::from_fn(|k| v[k] + dt * (a[k] + g[k]))
 }
 
-impl<const D: usize, S, F, W, K> Pass<D, S> for ForcePass<'_, D, S, F, W, K>
-where
-    S: Real + Pod,
-    F: PairTerm<D, Pressure>,
-    W: PairTerm<D, Pressure>,
-    K: Kernel,
-{
+/// Share of the newest step in the pressure gradient that walls continue.
+const NEWEST: f64 = 0.02;
+
+/// ∇p/ρ as walls continue it, m/s²: by Euler's equation the acceleration by pair forces with the sign
+/// turned, smoothed over some fifty steps and limited to the magnitude of gravity. Smoothed and limited,
+/// because what impacts and sound do to single particles in single steps is no gradient of the flow.
+fn felt_gradient<const D: usize>(
+    before: &[f64; D],
+    acceleration: &[f64; D],
+    gravity: &[f64; D],
+) -> [f64; D] {
+    let smooth: [f64; D] =
+        std::array::from_fn(|k| before[k] - NEWEST * (acceleration[k] + before[k]));
+    let (length2, most2) = (square(smooth), square(*gravity));
+    if length2 > most2 { smooth.map(|g| g * (most2 / length2).sqrt()) } else { smooth }
+}
+
+impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
+    /// Adds a part of the accelerations by walls, and of the loads on them.
+    fn from_walls(
+        &self,
+        part: Part,
+        old: &[Record<S>],
+        block: &mut Block<'_, D, S, Acceleration<D>>,
+        loads: &mut Loads,
+    ) {
+        let sum = match part {
+            Part::Pressure => &self.scheme.wall_force,
+            Part::Friction => &self.scheme.wall_friction,
+        };
+        let Some(sum) = sum else { return };
+        self.around.from_walls(&**sum, old, block, |wall, block, own| {
+            let (Some(scale), Some(solid)) = (&self.loads, self.model.solid(wall.solid)) else {
+                return;
+            };
+            for (k, Acceleration(a)) in own.iter().enumerate() {
+                if a.iter().all(|a| *a == 0.0) {
+                    continue;
+                }
+                let force = a.map(|a| -block.mass[k] * a);
+                let periods = &self.around.scale.periods;
+                let arm = space::offset(&block.position[k], &solid.center, periods);
+                loads.add(wall.solid, part, force, arm, scale);
+            }
+        });
+    }
+}
+
+impl<const D: usize, S: Real + Pod> Pass<D, S> for ForcePass<'_, D, S> {
     type Rate = Acceleration<D>;
     /// Place and motion.
     type Message = [S; 6];
 
-    fn flux(
-        &self,
-        first: usize,
-        old: &[Record<S>],
-        density: &[f64],
-        rates: &mut [Acceleration<D>],
-    ) {
-        let sources = self.around.sources(old);
-        let clusters = self.around.near_fluid.clusters();
-        let scale = self.model.scale::<K>();
-        sweep::<D, Pressure, K, S, _>(clusters, first, old, density, scale, &sources, rates);
+    fn clusters(&self) -> &Clusters {
+        self.around.near_fluid.clusters()
+    }
+
+    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Acceleration<D>>) -> Loads {
+        let mut loads = Loads::NONE;
+        self.around.from_fluid(&*self.scheme.force, old, block);
+        self.from_walls(Part::Pressure, old, block, &mut loads);
+        self.from_walls(Part::Friction, old, block, &mut loads);
+        loads
     }
 
     fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Acceleration<D>>) -> Extremes {
         let mut extremes = Extremes::NONE;
-        let (gravity, encoder) = (self.model.gravity, self.model.encoder::<K>());
+        let (gravity, encoder) = (self.model.gravity, &self.encoder);
         let density0 = self.model.equation_of_state.density0();
         let limit2 = self.model.speed_limit().powi(2);
         let old = &old[block.first..][..block.len()];
@@ -64,14 +111,19 @@ where
             let Acceleration(a) = block.rates[k];
             let now = kicked(block.velocity[k], 0.5 * self.dt_before, a, gravity);
             let velocity = kicked(now, 0.5 * self.dt, a, gravity);
+            let drift = match block.shift.get(k) {
+                Some(shift) => std::array::from_fn(|d| velocity[d] + shift[d]),
+                None => velocity,
+            };
             let position: [f64; D] =
-                std::array::from_fn(|d| block.position[k][d] + self.dt * velocity[d]);
+                std::array::from_fn(|d| block.position[k][d] + self.dt * drift[d]);
             let speed2 = square(velocity);
             let acceleration2 = square::<D>(std::array::from_fn(|d| a[d] + gravity[d]));
             // Written so that NaN is a fault too: `max` alone would drop it.
             let fault = f64::from(!(speed2 <= limit2 && acceleration2 < f64::MAX));
-            let ways = Extremes::ways(&velocity);
+            let ways = Extremes::ways(&drift);
             extremes = extremes.max(Extremes { speed2, acceleration2, fault, velocity: ways });
+            block.pressure_gradient[k] = felt_gradient(&block.pressure_gradient[k], &a, &gravity);
             block.velocity[k] = velocity;
             block.position[k] = position;
             block.new[k] = record(

@@ -20,34 +20,107 @@ mod force;
 pub use density::{DENSEST, DensityPass};
 pub use force::{ForcePass, kicked};
 
+use crate::block::Block;
+use crate::groups::{GroupSum, GroupView};
 use crate::records::Record;
-use crate::sweep::Neighbors;
+use crate::space::PairScale;
+use crate::sweep::Beside;
+use crate::terms::{DensityRate, Rate, VectorSum};
+use crate::walls::WallSet;
 use sph_neighbors::ClusterList;
 
-/// What surrounds the fluid particles of a rank, and the terms of a pass for it.
+/// What surrounds the fluid particles of a rank.
 #[derive(Debug, Clone, Copy)]
-pub struct Surroundings<'a, S, F, W> {
+pub struct Surroundings<'a, const D: usize, S> {
     /// Fluid neighbours of every owned fluid particle.
     pub near_fluid: &'a ClusterList,
-    /// Terms of fluid neighbours.
-    pub fluid: F,
-    /// Records of the wall particles. They do not change during a pass.
-    pub walls: &'a [Record<S>],
-    /// Wall neighbours of every owned fluid particle.
-    pub near_walls: &'a ClusterList,
-    /// Terms of wall neighbours.
-    pub wall: W,
+    /// Walls. They do not change during a pass.
+    pub walls: &'a [WallSet<D, S>],
+    /// Scale of the pairs.
+    pub scale: &'a PairScale<D>,
 }
 
-impl<'a, S, F: Copy, W: Copy> Surroundings<'a, S, F, W> {
-    /// The groups of neighbours of a sweep over the fluid records `fluid`.
-    pub fn sources<'b>(
-        &'b self,
-        fluid: &'b [Record<S>],
-    ) -> (Neighbors<'b, S, F>, Neighbors<'b, S, W>) {
-        (
-            Neighbors { records: fluid, list: self.near_fluid, terms: self.fluid },
-            Neighbors { records: self.walls, list: self.near_walls, terms: self.wall },
-        )
+impl<const D: usize, S> Surroundings<'_, D, S> {
+    /// Sets the rates of a block to the sum over its fluid neighbours, whose records are in `old`.
+    fn from_fluid<R: Rate>(
+        &self,
+        sum: &dyn GroupSum<D, S, R>,
+        old: &[Record<S>],
+        block: &mut Block<'_, D, S, R>,
+    ) {
+        let list = self.near_fluid;
+        let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
+        if !sum.sum(view, block.first, block.density, block.rates) {
+            block.rates.fill(R::default());
+        }
+    }
+
+    /// Sets the shifts of a block to the sums of how crowded fluid and walls are.
+    fn crowding(
+        &self,
+        fluid: &dyn GroupSum<D, S, VectorSum<D>>,
+        wall: Option<&dyn GroupSum<D, S, VectorSum<D>>>,
+        old: &[Record<S>],
+        block: &mut Block<'_, D, S, DensityRate>,
+    ) {
+        let mut sums = vec![VectorSum::default(); block.len()];
+        let mut own = sums.clone();
+        let list = self.near_fluid;
+        let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
+        fluid.sum(view, block.first, block.density, &mut sums);
+        for set in self.walls {
+            let Some(wall) = wall else { break };
+            let beside = Beside {
+                lowest_pressure: block.lowest_wall_pressure,
+                pressure_gradient: block.pressure_gradient,
+            };
+            let view = GroupView {
+                targets: old,
+                sources: &set.records,
+                list: &set.near,
+                scale: self.scale,
+                beside: Some(beside),
+            };
+            if wall.sum(view, block.first, block.density, &mut own) {
+                sums.iter_mut().zip(&own).for_each(|(sum, own)| *sum += *own);
+            }
+        }
+        for (shift, VectorSum(sum)) in block.shift.iter_mut().zip(sums) {
+            *shift = sum;
+        }
+    }
+
+    /// Adds the sums over the elements of each wall to the rates of a block. `part` is shown what each
+    /// wall contributed.
+    fn from_walls<R: Rate>(
+        &self,
+        sum: &dyn GroupSum<D, S, R>,
+        old: &[Record<S>],
+        block: &mut Block<'_, D, S, R>,
+        mut part: impl FnMut(&WallSet<D, S>, &Block<'_, D, S, R>, &[R]),
+    ) {
+        let mut own = Vec::new();
+        for wall in self.walls {
+            own.resize(block.len(), R::default());
+            let list = &wall.near;
+            let beside = Beside {
+                lowest_pressure: block.lowest_wall_pressure,
+                pressure_gradient: block.pressure_gradient,
+            };
+            let view = GroupView {
+                targets: old,
+                sources: &wall.records,
+                list,
+                scale: self.scale,
+                beside: Some(beside),
+            };
+            if !sum.sum(view, block.first, block.density, &mut own) {
+                continue;
+            }
+            for (rate, own) in block.rates.iter_mut().zip(&own) {
+                *rate += *own;
+            }
+            part(wall, block, &own);
+        }
     }
 }

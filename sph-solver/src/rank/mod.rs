@@ -2,14 +2,16 @@
 
 pub(crate) mod costs;
 mod rebuild;
-mod solids;
 mod traveller;
+mod walls;
 
 use crate::block::FluidColumns;
 use crate::passes::{DENSEST, Surroundings};
 use crate::records::{Encoder, Record, record};
+use crate::space::PairScale;
 use crate::state::State;
-use crate::terms::Acceleration;
+use crate::terms::{Acceleration, DensityRate};
+use crate::walls::{WallElements, WallSet};
 use bytemuck::Pod;
 use sph_decomp::{Askew, Halo, HaloPlan, Orb, Parts};
 use sph_kernels::Real;
@@ -18,35 +20,36 @@ use sph_neighbors::{CellList, ClusterList};
 /// The particles of a rank.
 ///
 /// Owned particles are columns of [`State`]. Records hold `[local | inner | outer]` of the fluid,
-/// twice because a pass reads one copy and writes the other, and once all solids, owned or not, that
-/// the fluid of this rank can see.
+/// twice because a pass reads one copy and writes the other, and once all elements of walls, owned or
+/// not, that the fluid of this rank can see.
 #[derive(Debug, Clone, Default)]
 pub struct Rank<const D: usize, S: Real> {
     /// Owned fluid particles.
     pub state: State<D>,
-    /// Owned solid particles. They are at rest.
-    pub solids: State<D>,
+    /// Owned elements of walls.
+    pub elements: WallElements<D>,
     /// Layout of the fluid.
     pub fluid: Parts,
-    /// Layout of the solids.
+    /// Layout of the elements of walls.
     pub solid: Parts,
     /// Fluid neighbours of the owned fluid particles.
     pub near_fluid: ClusterList,
-    /// Solid neighbours of the owned fluid particles.
-    pub near_walls: ClusterList,
-    /// Which owned fluid particles are spray, see [`crate::spray`].
-    pub spray: Vec<bool>,
-    /// Acceleration of the owned fluid particles by pair forces (without gravity), m/s².
-    pub acceleration: Vec<Acceleration<D>>,
-    /// dρ/dt of the owned fluid particles, kg/m³/s.
-    pub density_rate: Vec<f64>,
+    /// Walls that the fluid of this rank can see, with their elements near it.
+    pub walls: Vec<WallSet<D, S>>,
+    /// Lowest pressure that a wall has towards each owned fluid particle, Pa: the density pass says.
+    lowest_wall_pressure: Vec<f64>,
+    /// Velocity by which each owned fluid particle is shifted, m/s; nothing if none is.
+    shift: Vec<[f64; D]>,
+    /// Results of the force sweep.
+    pub(crate) force_rate: Vec<Acceleration<D>>,
+    /// Results of the density sweep.
+    density_rate: Vec<DensityRate>,
     /// Records with density deviations.
     deviation: Vec<Record<S>>,
     /// Records with pressures.
     pressure: Vec<Record<S>>,
-    walls: Vec<Record<S>>,
-    /// Where they are; none before they are settled.
-    wall_cells: Option<CellList<D>>,
+    /// Whether the walls are where the fluid of this rank can see them.
+    settled: bool,
     /// Where the fluid is, outer particles included.
     cells: Option<CellList<D>>,
     /// Lanes that were pairs, of all that were computed, when the fluid was last sorted.
@@ -59,7 +62,7 @@ pub struct Rank<const D: usize, S: Real> {
 
 /// The record of particle `i`, with its density deviation.
 fn record_of<const D: usize, S: Real>(
-    encoder: &Encoder,
+    encoder: &Encoder<D, S>,
     density0: f64,
     state: &State<D>,
     i: usize,
@@ -73,10 +76,8 @@ fn record_of<const D: usize, S: Real>(
 pub struct Passing<'a, const D: usize, S> {
     /// Fluid neighbours.
     pub near_fluid: &'a ClusterList,
-    /// Solid neighbours.
-    pub near_walls: &'a ClusterList,
-    /// Records of solids.
-    pub walls: &'a [Record<S>],
+    /// Walls.
+    pub walls: &'a [WallSet<D, S>],
     /// Layout of the fluid.
     pub parts: Parts,
     /// Who sends what.
@@ -88,9 +89,9 @@ pub struct Passing<'a, const D: usize, S> {
     /// Records with pressures.
     pub pressure: &'a mut [Record<S>],
     /// Results of the density pass.
-    pub density_rate: &'a mut [f64],
+    pub density_rate: &'a mut [DensityRate],
     /// Results of the force pass.
-    pub acceleration: &'a mut [Acceleration<D>],
+    pub force_rate: &'a mut [Acceleration<D>],
     /// Buffers of the density pass.
     pub density_halo: &'a mut Halo<[S; 3]>,
     /// Buffers of the force pass.
@@ -98,30 +99,26 @@ pub struct Passing<'a, const D: usize, S> {
 }
 
 impl<'a, const D: usize, S> Passing<'a, D, S> {
-    /// The surroundings of the fluid with the terms of a pass.
-    pub fn surroundings<F, W>(&self, fluid: F, wall: W) -> Surroundings<'a, S, F, W> {
-        Surroundings {
-            near_fluid: self.near_fluid,
-            fluid,
-            walls: self.walls,
-            near_walls: self.near_walls,
-            wall,
-        }
+    /// The surroundings of the fluid.
+    pub fn surroundings(&self, scale: &'a PairScale<D>) -> Surroundings<'a, D, S> {
+        Surroundings { near_fluid: self.near_fluid, walls: self.walls, scale }
     }
 }
 
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
-    /// Holds `state`; nothing is built yet.
-    pub fn new(state: State<D>) -> Self {
-        let (state, solids) = solids::apart(state);
-        Self { state, solids, ..Self::default() }
+    /// Holds fluid and walls; nothing is built yet.
+    pub fn new(state: State<D>, elements: WallElements<D>) -> Self {
+        Self { state, elements, ..Self::default() }
     }
 
-    /// All owned particles: fluid, then solids.
-    pub fn whole_state(&self) -> State<D> {
-        let mut whole = self.state.clone();
-        whole.append(&self.solids);
-        whole
+    /// Makes room for what a scheme keeps per particle beyond its state.
+    pub fn make_room(&mut self, shifts: bool) {
+        self.shift.resize(if shifts { self.fluid.owned() } else { 0 }, [0.0; D]);
+    }
+
+    /// Pairs of the owned fluid particles with fluid and walls.
+    pub fn pairs(&self) -> u64 {
+        self.near_fluid.pairs() + self.walls.iter().map(|wall| wall.near.pairs()).sum::<u64>()
     }
 
     /// Everything that a pass needs.
@@ -129,7 +126,6 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         let n = self.fluid.owned();
         Passing {
             near_fluid: &self.near_fluid,
-            near_walls: &self.near_walls,
             walls: &self.walls,
             parts: self.fluid,
             plan: &self.plan,
@@ -138,12 +134,14 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
                 velocity: &mut self.state.velocity[..n],
                 density: &mut self.state.density[..n],
                 mass: &self.state.mass[..n],
-                spray: &self.spray,
+                pressure_gradient: &mut self.state.pressure_gradient[..n],
+                lowest_wall_pressure: &mut self.lowest_wall_pressure,
+                shift: &mut self.shift,
             },
             deviation: &mut self.deviation,
             pressure: &mut self.pressure,
             density_rate: &mut self.density_rate,
-            acceleration: &mut self.acceleration,
+            force_rate: &mut self.force_rate,
             density_halo: &mut self.density_halo,
             force_halo: &mut self.force_halo,
         }
@@ -154,7 +152,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         let fits = |v: &[f64; D]| v.iter().map(|c| c * c).sum::<f64>() <= speed_limit * speed_limit;
         let sound = |k: &usize| {
             let state = &self.state;
-            let Acceleration(a) = &self.acceleration[*k];
+            let Acceleration(a) = &self.force_rate[*k];
             let density = state.density[*k];
             fits(&state.velocity[*k])
                 && a.iter().all(|c| c.is_finite())
@@ -170,13 +168,14 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Bytes of particle data and lists on this rank.
     pub fn bytes(&self) -> usize {
         let record = size_of::<Record<S>>();
-        let column = 2 * size_of::<[f64; D]>() + 2 * 8 + 8 + 2;
-        (self.state.len() + self.solids.len()) * column
-            + (self.deviation.len() + self.pressure.len() + self.walls.len()) * record
-            + self.acceleration.len() * (size_of::<[f64; D]>() + 8)
+        let column = 3 * size_of::<[f64; D]>() + 3 * 8;
+        self.state.len() * column
+            + self.elements.bytes()
+            + (self.deviation.len() + self.pressure.len()) * record
+            + self.shift.len() * size_of::<[f64; D]>()
+            + self.force_rate.len() * (size_of::<[f64; D]>() + size_of::<DensityRate>() + 8)
             + self.near_fluid.bytes()
-            + self.near_walls.bytes()
             + self.cells.as_ref().map_or(0, CellList::bytes)
-            + self.wall_cells.as_ref().map_or(0, CellList::bytes)
+            + self.walls.iter().map(WallSet::bytes).sum::<usize>()
     }
 }

@@ -6,10 +6,10 @@ use super::{Rank, record_of};
 use crate::error::RunError;
 use crate::model::Model;
 use crate::records::Encoder;
-use crate::spray::mark_spray;
+use crate::space::wrapped;
 use crate::state::State;
 use crate::team::Team;
-use crate::terms::Acceleration;
+use crate::terms::{Acceleration, DensityRate};
 use bytemuck::Pod;
 use sph_decomp::{
     Askew, Communicator, Halo, HaloPlan, MaxReach, Orb, Partition, Parts, Reach, Zone, ZoneOptions,
@@ -38,16 +38,18 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         comm: &dyn Communicator,
         team: &Team,
         model: &Model<D>,
-        encoder: &Encoder,
-        has_walls: bool,
+        encoder: &Encoder<D, S>,
         division: Option<f64>,
     ) -> Result<Vec<(u64, [f64; D])>, RunError> {
         let gone = self.remove_outside(model);
-        let grid = Grid::new(model.domain.0, CELL * model.reach())?;
-        let settled = self.wall_cells.is_some();
+        for x in &mut self.state.position {
+            *x = wrapped(*x, &model.domain.0, &model.periods);
+        }
+        let grid = Grid::new(model.domain.0, CELL * model.reach())?.periodic(model.periods)?;
+        let settled = self.settled;
         let divided = comm.size() > 1 && self.send_home(comm, division)?;
         if divided || !settled {
-            self.settle_solids(comm, model, encoder, &grid)?;
+            self.settle_walls(comm, team, model, encoder, &grid)?;
         }
         let loose = self.near_fluid.compactness() < LOOSE * self.compactness;
         let sorts = comm.size() > 1 || !settled || !gone.is_empty() || loose;
@@ -58,11 +60,10 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         } else {
             State::default()
         };
-        team.install(|| self.build_lists(&grid, model.reach(), &outer, has_walls));
+        team.install(|| self.build_lists(&grid, model.reach(), &outer));
         if sorts {
             self.compactness = self.near_fluid.compactness();
         }
-        self.spray = mark_spray(model, &self.near_fluid, &self.near_walls);
         Ok(gone)
     }
 
@@ -89,15 +90,15 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     ) -> Result<bool, RunError> {
         if let Some(rate) = division {
             let weights: Vec<f64> = self.costs().iter().map(|cost| rate * cost).collect();
-            let positions = [&self.state.position[..], &self.solids.position[..]].concat();
+            let positions = [&self.state.position[..], &self.elements.position[..]].concat();
             let positions = Askew::view(&positions);
             self.partition = Some(Askew::new(Orb::build(&comm, &positions, &weights)?));
         }
         if let Some(partition) = &self.partition {
             migrate(&comm, &partition.owners(&self.state.position), &mut self.state.columns())?;
             if division.is_some() {
-                let owners = partition.owners(&self.solids.position);
-                migrate(&comm, &owners, &mut self.solids.columns())?;
+                let owners = partition.owners(&self.elements.position);
+                migrate(&comm, &owners, &mut self.elements.columns())?;
             }
         }
         Ok(division.is_some())
@@ -109,17 +110,19 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         let pairs = |list: &ClusterList, i| if i < list.len() { list.count(i) } else { 0 };
         let neighbours = |i: usize| match self.near_fluid.is_empty() {
             true => USUAL_NEIGHBOURS,
-            false => pairs(&self.near_fluid, i) + pairs(&self.near_walls, i),
+            false => {
+                let walls = self.walls.iter().map(|wall| pairs(&wall.near, i));
+                pairs(&self.near_fluid, i) + walls.sum::<usize>()
+            }
         };
         let fluid = (0..self.state.len()).map(|i| FLUID_COST + neighbours(i) as f64);
-        fluid.chain(std::iter::repeat_n(WALL_COST, self.solids.len())).collect()
+        fluid.chain(std::iter::repeat_n(WALL_COST, self.elements.len())).collect()
     }
 
     /// Sum of the costs of the owned particles with the present lists; 0 before there are lists.
     pub fn predicted_cost(&self) -> f64 {
-        let pairs = self.near_fluid.pairs() + self.near_walls.pairs();
-        let (fluid, solid) = (self.state.len() as f64, self.solids.len() as f64);
-        FLUID_COST * fluid + WALL_COST * solid + pairs as f64
+        let (fluid, solid) = (self.state.len() as f64, self.elements.len() as f64);
+        FLUID_COST * fluid + WALL_COST * solid + self.pairs() as f64
     }
 
     /// Finds who needs which fluid particles, sorts those of this rank, and fetches those of others.
@@ -131,7 +134,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         grid: &Grid<D>,
     ) -> Result<State<D>, RunError> {
         let reach = Reach::Uniform(model.reach());
-        let options = ZoneOptions::default();
+        let options = ZoneOptions { period: model.periods, ..ZoneOptions::default() };
         let zone = Zone::build(&comm, &self.state.position, reach, MaxReach, &options)?;
         let mut plan = zone.into_plan(&comm)?;
         self.sort_owned(model, &mut plan)?;
@@ -164,7 +167,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     }
 
     /// Writes the records of the fluid: owned particles, then outer ones.
-    fn lay_out(&mut self, model: &Model<D>, encoder: &Encoder, outer: &State<D>) {
+    fn lay_out(&mut self, model: &Model<D>, encoder: &Encoder<D, S>, outer: &State<D>) {
         let density0 = model.equation_of_state.density0();
         let write = |state: &State<D>, i: usize| record_of(encoder, density0, state, i);
         let owned = self.state.len();
@@ -173,11 +176,12 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.deviation.extend((0..outer.len()).map(|i| write(outer, i)));
         // The density pass writes every one of these before anybody reads them.
         self.pressure.resize(self.deviation.len(), [S::from_f64(0.0); 8]);
-        self.acceleration.resize(owned, Acceleration::default());
-        self.density_rate.resize(owned, 0.0);
+        self.force_rate.resize(owned, Acceleration::default());
+        self.density_rate.resize(owned, DensityRate::default());
+        self.lowest_wall_pressure.resize(owned, 0.0);
     }
 
-    fn build_lists(&mut self, grid: &Grid<D>, reach: f64, outer: &State<D>, has_walls: bool) {
+    fn build_lists(&mut self, grid: &Grid<D>, reach: f64, outer: &State<D>) {
         let targets = &self.state.position[..];
         let clusters = Clusters::without_jumps(targets, &[self.fluid.local], JUMP * reach);
         let cells = self.cells.get_or_insert_with(|| CellList::build(grid, &[], &[]));
@@ -189,8 +193,8 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             cells.rebuild(grid, &positions, &ids);
         }
         self.near_fluid.rebuild(&clusters, cells, targets, true, reach);
-        if let Some(wall_cells) = self.wall_cells.as_ref().filter(|_| has_walls) {
-            self.near_walls.rebuild(&clusters, wall_cells, targets, false, reach);
+        for wall in &mut self.walls {
+            wall.find(&clusters, targets, reach);
         }
     }
 }

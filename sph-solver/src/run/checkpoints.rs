@@ -44,12 +44,14 @@ impl Progress {
 /// so gets the same bits; from any later state only once new lists are due.
 #[derive(Debug)]
 pub struct Kept<const D: usize> {
-    /// The fluid of this rank. Solids at rest need no copy.
+    /// The fluid of this rank. Walls at rest need no copy.
     pub fluid: State<D>,
     /// The clock then.
     pub clock: Clock,
     /// What had been written then.
     pub progress: Progress,
+    /// Loads on solids, as [`LoadLog::save`](super::load_log::LoadLog::save) gave them.
+    pub loads: Vec<f64>,
 }
 
 /// Whole checkpoints that are kept; older ones are removed.
@@ -67,6 +69,7 @@ pub fn save<const D: usize>(
     state: State<D>,
     clock: Clock,
     progress: Progress,
+    loads: Vec<f64>,
 ) -> Result<(), RunError> {
     let mut columns = state.into_columns();
     gather_by_id(comm, &mut columns, |columns| columns.0.clone())?;
@@ -76,9 +79,9 @@ pub fn save<const D: usize>(
     let state = State::from_columns(columns);
     let checkpoint = Checkpoint::new(clock.time, clock.step, &state.id, &state.position)
         .with("velocity", &state.velocity)
+        .with("pressure_gradient", &state.pressure_gradient)
         .with("density", &state.density)
         .with("mass", &state.mass)
-        .with("kind", &state.kind)
         .with_attribute("dt", clock.dt)
         .with_attribute("largest_speed_squared", clock.extremes.speed2)
         .with_attribute("largest_acceleration_squared", clock.extremes.acceleration2)
@@ -89,6 +92,7 @@ pub fn save<const D: usize>(
         .with_attribute("next_checkpoint", progress.checkpoints.next())
         .with_attribute("checkpoint_interval", progress.checkpoints.interval())
         .with_attribute("lost_particles", progress.lost)
+        .with_attribute("loads", loads)
         .with_attribute("identity", plan.identity.particles.to_text())
         .with_attribute("settings", plan.identity.settings.to_text())
         .with_attribute("simd", sph_kernels::simd_level())
@@ -98,19 +102,32 @@ pub fn save<const D: usize>(
     Ok(())
 }
 
+/// What a run goes on from.
+#[derive(Debug)]
+pub struct Loaded<const D: usize> {
+    /// Particles of this rank.
+    pub state: State<D>,
+    /// Clock.
+    pub clock: Clock,
+    /// Progress of the outputs.
+    pub progress: Progress,
+    /// Loads on solids, as [`LoadLog::save`](super::load_log::LoadLog::save) gave them.
+    pub loads: Vec<f64>,
+}
+
 /// Particles of this rank, clock and progress from the latest whole checkpoint. The number of ranks
 /// may differ from that of the run that wrote it. Collective.
 pub fn load<const D: usize>(
     comm: &dyn Communicator,
     plan: &RunPlan<D>,
-) -> Result<(State<D>, Clock, Progress), RunError> {
+) -> Result<Loaded<D>, RunError> {
     let mine = load_here(comm, plan).and_then(|loaded| {
-        let (time, end) = (loaded.1.time, plan.end_time);
+        let (time, end) = (loaded.clock.time, plan.end_time);
         if time < end { Ok(loaded) } else { Err(RunError::NothingLeft { time, end }) }
     });
     // Each rank has looked for itself, perhaps on another machine: only agreement counts.
     let found = match &mine {
-        Ok((_, clock, _)) => format!("step {}", clock.step),
+        Ok(loaded) => format!("step {}", loaded.clock.step),
         Err(RunError::NothingToResume { .. }) => "nothing".into(),
         Err(RunError::OtherScene { .. }) => "another scene".into(),
         Err(_) => "an error".into(),
@@ -128,7 +145,7 @@ pub fn load<const D: usize>(
 fn load_here<const D: usize>(
     comm: &dyn Communicator,
     plan: &RunPlan<D>,
-) -> Result<(State<D>, Clock, Progress), RunError> {
+) -> Result<Loaded<D>, RunError> {
     let none = || RunError::NothingToResume { path: plan.out.clone() };
     if !plan.out.is_dir() {
         return Err(none());
@@ -176,13 +193,14 @@ fn load_here<const D: usize>(
     }
     let state = State {
         id: file.ids.to_vec(),
-        kind: file.column::<u16>("kind")?.to_vec(),
         mass: file.column::<f64>("mass")?.to_vec(),
         density: file.column::<f64>("density")?.to_vec(),
         position: file.positions.to_vec(),
         velocity: file.column::<[f64; D]>("velocity")?.to_vec(),
+        pressure_gradient: file.column::<[f64; D]>("pressure_gradient")?.to_vec(),
     };
-    Ok((state, clock, progress))
+    let loads = attributes.f64_array("loads")?.to_vec();
+    Ok(Loaded { state, clock, progress, loads })
 }
 
 /// Notes what is not as it was when the checkpoint was written.

@@ -4,20 +4,23 @@ use super::checkpoints::{self, Kept, Progress};
 use super::digest::Digest;
 use super::files::Files;
 use super::gather::gather_by_id;
+use super::load_log::{LoadLog, LoadTotal};
 use super::plan::RunPlan;
 use super::samples::{self, Budget};
 use super::schedule::Schedule;
 use super::stop::StopReason;
 use crate::error::RunError;
+use crate::loads::LoadScale;
 use crate::model::Model;
-use crate::physics::Physics;
+use crate::scheme::Scheme;
 use crate::simulation::{FullStep, Lost, Simulation};
 use crate::state::State;
 use crate::team::Team;
 use crate::timings::Phase;
+use crate::walls::WallElements;
 use bytemuck::Pod;
 use sph_decomp::Communicator;
-use sph_kernels::{Kernel, Real};
+use sph_kernels::Real;
 use std::time::{Duration, Instant};
 
 /// How far a run has come, for whoever watches it.
@@ -52,6 +55,8 @@ pub struct Finished<const D: usize> {
     pub time_step: f64,
     /// Particles taken out, on all ranks, over the whole run.
     pub lost: u64,
+    /// Loads on the solids over the whole run, by name.
+    pub loads: Vec<(String, LoadTotal)>,
     /// Snapshots written by this process.
     pub snapshots: u64,
     /// Time of the checkpoint that the run continued.
@@ -62,25 +67,24 @@ pub struct Finished<const D: usize> {
 
 /// Runs one rank to the end. Collective. `state` is the share of the initial particles of this
 /// rank; a resumed run drops it for that of the checkpoint.
-pub fn drive<'a, const D: usize, S, K, P>(
+pub fn drive<'a, const D: usize, S: Real + Pod>(
     comm: &'a dyn Communicator,
     team: Team,
     model: Model<D>,
-    physics: P,
+    scheme: Scheme<D, S>,
     state: State<D>,
+    elements: WallElements<D>,
     plan: &RunPlan<D>,
     watch: &(dyn Fn(Status) + Sync),
-) -> Result<(Simulation<'a, D, S, K, P>, Finished<D>), RunError>
-where
-    S: Real + Pod,
-    K: Kernel,
-    P: Physics<D>,
-{
+) -> Result<(Simulation<'a, D, S>, Finished<D>), RunError> {
     let start = Instant::now();
+    let solids = model.solids.len();
+    let mut loads = LoadLog::new(solids, load_scale(&model));
     let (state, clock, progress) = if plan.resume {
         drop(state);
-        let (state, clock, progress) = checkpoints::load(comm, plan)?;
-        (state, Some(clock), progress)
+        let loaded = checkpoints::load(comm, plan)?;
+        loads.restore(&loaded.loads);
+        (loaded.state, Some(loaded.clock), loaded.progress)
     } else {
         (state, None, Progress::start(plan))
     };
@@ -90,7 +94,9 @@ where
     if comm.rank() == 0 {
         clear(plan, resumed_at.is_some())?;
     }
-    let mut files = if comm.rank() == 0 { Some(Files::open(plan, written_until)?) } else { None };
+    let names: Vec<&str> = model.solids.iter().map(|solid| solid.name.as_str()).collect();
+    let mut files =
+        if comm.rank() == 0 { Some(Files::open(plan, &names, written_until)?) } else { None };
     let mut out = Outputs {
         comm,
         plan,
@@ -98,13 +104,17 @@ where
         samples: progress.samples,
         checkpoints: progress.checkpoints,
         lost: progress.lost,
+        loads,
         first_budget: None,
         kept: None,
         saved: None,
         fast: false,
     };
     let mut stopping = None;
-    let mut simulation = Simulation::<D, S, K, P>::new(comm, team, model, physics, state, clock)?;
+    let mut simulation = Simulation::new(comm, team, model, scheme, state, elements, clock)?;
+    if solids > 0 {
+        simulation.count_loads(out.loads.scale());
+    }
     let begin = simulation.time();
     if resumed_at.is_none() {
         out.walls(&simulation, files.as_mut())?;
@@ -130,20 +140,26 @@ where
         let time_step = simulation.time_step();
         let report = last || out.snapshots.due(time) || out.samples.due(time);
         let full = simulation.step(report)?;
+        if solids > 0 {
+            out.loads.record(comm, simulation.loads(), time_step, simulation.time_step())?;
+        }
         out.lost(&mut simulation, files.as_mut())?;
         if let Some(full) = full {
-            let budget = out.report::<S, K, P>(&simulation, &full, last, files.as_mut())?;
+            let budget = out.report(&simulation, &full, last, files.as_mut())?;
             if last {
                 let first = out.first_budget.unwrap_or(budget);
                 if plan.checkpoints.is_some() {
                     out.save_kept(&simulation)?;
                 }
+                let solids = simulation.model().solids.iter().map(|solid| solid.name.clone());
+                let loads = solids.zip(out.loads.totals(comm)?).collect();
                 let finished = Finished {
                     digest: digest(comm, &full)?,
                     last: full,
                     budgets: (first, budget),
                     time_step,
                     lost: out.lost,
+                    loads,
                     snapshots: files.map_or(0, |files| files.snapshots()),
                     resumed_at,
                     elapsed: start.elapsed(),
@@ -170,6 +186,12 @@ where
     }
 }
 
+fn load_scale<const D: usize>(model: &Model<D>) -> LoadScale {
+    let density0 = model.equation_of_state.density0();
+    let mass = density0 * model.spacing.powi(D as i32);
+    LoadScale::new(mass, model.spacing, model.limits.sound_speed)
+}
+
 /// Takes away what an earlier run left in the folder and could be mistaken for a result of this one.
 fn clear<const D: usize>(plan: &RunPlan<D>, resumes: bool) -> Result<(), RunError> {
     let folder = |source| RunError::Folder { path: plan.out.clone(), source };
@@ -191,6 +213,7 @@ struct Outputs<'a, const D: usize> {
     samples: Schedule,
     checkpoints: Schedule,
     lost: u64,
+    loads: LoadLog,
     first_budget: Option<Budget<D>>,
     /// State of the last rebuild, unless it is in a checkpoint.
     kept: Option<Kept<D>>,
@@ -205,26 +228,27 @@ struct Outputs<'a, const D: usize> {
 const FASTEST_MACH: f64 = 0.15;
 
 impl<const D: usize> Outputs<'_, D> {
-    fn walls<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn walls<S: Real + Pod>(
         &self,
-        simulation: &Simulation<'_, D, S, K, P>,
+        simulation: &Simulation<'_, D, S>,
         files: Option<&mut Files>,
     ) -> Result<(), RunError> {
         if self.plan.snapshots.is_none() {
             return Ok(());
         }
-        let mut columns = simulation.rank().solids.clone().into_columns();
+        let mut columns = simulation.rank().elements.clone().into_columns();
         gather_by_id(self.comm, &mut columns, |columns| columns.0.clone())?;
-        let walls = State::from_columns(columns);
+        let walls = WallElements::from_columns(columns);
+        let density0 = simulation.model().equation_of_state.density0();
         match files {
-            Some(files) if !walls.is_empty() => files.walls(&walls),
+            Some(files) if !walls.is_empty() => files.walls(&walls, density0),
             _ => Ok(()),
         }
     }
 
-    fn lost<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn lost<S: Real + Pod>(
         &mut self,
-        simulation: &mut Simulation<'_, D, S, K, P>,
+        simulation: &mut Simulation<'_, D, S>,
         files: Option<&mut Files>,
     ) -> Result<(), RunError> {
         // Particles are taken out in rebuilds only, on all ranks in the same step.
@@ -251,15 +275,17 @@ impl<const D: usize> Outputs<'_, D> {
         files.lost(&all.collect::<Vec<_>>())
     }
 
-    fn checkpoint<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn checkpoint<S: Real + Pod>(
         &mut self,
-        simulation: &Simulation<'_, D, S, K, P>,
+        simulation: &Simulation<'_, D, S>,
     ) -> Result<(), RunError> {
         let _timer = simulation.timings().measure(Phase::Output);
         // Also makes sure that no rank has met a fault: a bad state never becomes a checkpoint.
         let clock = simulation.clock()?;
         self.checkpoints.done(clock.time);
-        checkpoints::save(self.comm, self.plan, simulation.state(), clock, self.progress())?;
+        let loads = self.loads.save(self.comm)?;
+        let state = simulation.state();
+        checkpoints::save(self.comm, self.plan, state, clock, self.progress(), loads)?;
         self.saved = Some(clock.step);
         self.kept = None;
         Ok(())
@@ -275,39 +301,36 @@ impl<const D: usize> Outputs<'_, D> {
     }
 
     /// Keeps a copy of the present state, from which new lists are about to be built.
-    fn keep<S: Real + Pod, K: Kernel, P: Physics<D>>(
-        &mut self,
-        simulation: &Simulation<'_, D, S, K, P>,
-    ) -> Result<(), RunError> {
+    fn keep<S: Real + Pod>(&mut self, simulation: &Simulation<'_, D, S>) -> Result<(), RunError> {
         let _timer = simulation.timings().measure(Phase::Output);
         let clock = simulation.clock()?;
         let mut fluid = self.kept.take().map_or_else(State::default, |kept| kept.fluid);
         fluid.clone_from(&simulation.rank().state);
-        self.kept = Some(Kept { fluid, clock, progress: self.progress() });
+        let loads = self.loads.save(self.comm)?;
+        self.kept = Some(Kept { fluid, clock, progress: self.progress(), loads });
         Ok(())
     }
 
     /// Makes sure that a checkpoint of the last rebuild is there. Without a kept state there may be
     /// none, which is what this tells.
-    fn save_kept<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn save_kept<S: Real + Pod>(
         &mut self,
-        simulation: &Simulation<'_, D, S, K, P>,
+        simulation: &Simulation<'_, D, S>,
     ) -> Result<bool, RunError> {
         let _timer = simulation.timings().measure(Phase::Output);
-        let Some(Kept { mut fluid, clock, progress }) = self.kept.take() else {
+        let Some(Kept { fluid, clock, progress, loads }) = self.kept.take() else {
             return Ok(self.plan.keeps_state && self.saved.is_some());
         };
         // No rank has met a fault since, or the run would have ended.
-        fluid.append(&simulation.rank().solids);
-        checkpoints::save(self.comm, self.plan, fluid, clock, progress)?;
+        checkpoints::save(self.comm, self.plan, fluid, clock, progress, loads)?;
         self.saved = Some(clock.step);
         Ok(true)
     }
 
     /// What a run that was asked to end tells.
-    fn stopped<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn stopped<S: Real + Pod>(
         &self,
-        simulation: &Simulation<'_, D, S, K, P>,
+        simulation: &Simulation<'_, D, S>,
         reason: StopReason,
     ) -> RunError {
         let (step, time) = (simulation.steps(), simulation.time());
@@ -316,10 +339,7 @@ impl<const D: usize> Outputs<'_, D> {
     }
 
     /// Says it, once, when the flow is faster than the sound speed allows for.
-    fn notice_speed<S: Real + Pod, K: Kernel, P: Physics<D>>(
-        &mut self,
-        simulation: &Simulation<'_, D, S, K, P>,
-    ) {
+    fn notice_speed<S: Real + Pod>(&mut self, simulation: &Simulation<'_, D, S>) {
         let speed = simulation.largest_speed();
         let sound_speed = simulation.model().limits.sound_speed;
         if self.comm.rank() != 0 || self.fast || speed <= FASTEST_MACH * sound_speed {
@@ -336,9 +356,9 @@ impl<const D: usize> Outputs<'_, D> {
         ));
     }
 
-    fn report<S: Real + Pod, K: Kernel, P: Physics<D>>(
+    fn report<S: Real + Pod>(
         &mut self,
-        simulation: &Simulation<'_, D, S, K, P>,
+        simulation: &Simulation<'_, D, S>,
         full: &FullStep<D>,
         last: bool,
         mut files: Option<&mut Files>,
@@ -350,11 +370,14 @@ impl<const D: usize> Outputs<'_, D> {
         let budget = samples::budget(self.comm, model, full)?;
         self.first_budget.get_or_insert(budget);
         if last || self.samples.due(full.time) {
-            let read = |(_, probe)| samples::read::<D, K>(self.comm, model, full, probe);
+            let kernel = &simulation.scheme().kernel;
+            let read = |(_, probe)| samples::read(self.comm, model, kernel, full, probe);
             let probes = self.plan.probes.iter().map(|(name, probe)| (name, probe));
             let readings = probes.map(read).collect::<Result<Vec<_>, _>>()?;
+            let loads = self.loads.rows(self.comm)?;
             if let Some(files) = files.as_deref_mut() {
                 files.samples(full.time, &budget, &readings)?;
+                files.loads::<D>(full.time, &loads)?;
             }
             self.samples.done(full.time);
         }

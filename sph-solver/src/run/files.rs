@@ -1,12 +1,18 @@
 //! The files of a run. Only rank 0 writes; every file appears whole or not at all.
 
+use super::load_log::LoadRow;
 use super::plan::RunPlan;
 use super::samples::Budget;
 use crate::error::RunError;
+use crate::loads::NUMBERS;
 use crate::model::Model;
 use crate::simulation::{FullStep, Lost};
-use crate::state::{FLUID, State};
+use crate::walls::WallElements;
 use sph_io::{IoError, ParticleFrame, SnapshotSeries, TableWriter};
+use std::ops::Range;
+
+/// Kind of the fluid particles in files; solid k of the scene has kind 1 + k.
+const FLUID: u16 = 0;
 
 /// Open outputs of rank 0.
 #[derive(Debug)]
@@ -14,6 +20,7 @@ pub struct Files {
     series: SnapshotSeries,
     energies: TableWriter,
     probes: Vec<TableWriter>,
+    solids: Vec<TableWriter>,
     lost: TableWriter,
     snapshots: u64,
 }
@@ -22,6 +29,7 @@ impl Files {
     /// Opens the outputs of a run; with `resumed_at`, continues those that end at that time (s).
     pub fn open<const D: usize>(
         plan: &RunPlan<D>,
+        solids: &[&str],
         resumed_at: Option<f64>,
     ) -> Result<Self, RunError> {
         let table = |name: &str, columns: &[(&str, &str)]| {
@@ -58,19 +66,29 @@ impl Files {
             },
             energies: table("energies", &energy_columns(D))?,
             probes: probes.collect::<Result<_, _>>()?,
+            solids: solids
+                .iter()
+                .map(|name| table(&format!("solid-{name}"), &load_columns(D)))
+                .collect::<Result<_, _>>()?,
             lost: table("lost", &lost_columns(D))?,
             snapshots: 0,
         })
     }
 
     /// Writes the particles that do not move, once for the whole series.
-    pub fn walls<const D: usize>(&mut self, walls: &State<D>) -> Result<(), RunError> {
+    pub fn walls<const D: usize>(
+        &mut self,
+        walls: &WallElements<D>,
+        density0: f64,
+    ) -> Result<(), RunError> {
         // The pressure of a wall is a matter of each pair; 0 keeps the array in every file.
+        let kind: Vec<u16> = walls.solid.iter().map(|solid| FLUID + 1 + solid).collect();
         let frame = ParticleFrame::new(0.0, &walls.position)
-            .with("velocity", single(&walls.velocity))
+            .with("velocity", vec![[0.0_f32; D]; walls.len()])
             .with("pressure", vec![0.0_f32; walls.len()])
-            .with("density", single_scalars(&walls.density))
-            .with("kind", &walls.kind)
+            .with("density", vec![density0 as f32; walls.len()])
+            .with("normal", single(&walls.normal))
+            .with("kind", &kind)
             .with("id", &walls.id);
         Ok(self.series.fixed_part("walls", &frame)?)
     }
@@ -112,6 +130,22 @@ impl Files {
         Ok(())
     }
 
+    /// Appends a row to the table of each solid.
+    pub fn loads<const D: usize>(&mut self, time: f64, rows: &[LoadRow]) -> Result<(), RunError> {
+        for (table, row) in self.solids.iter_mut().zip(rows) {
+            let total = |load: &[f64; NUMBERS], k: usize| load[k] + load[6 + k];
+            let (forces, moments) = load_axes(D);
+            let mut numbers = Vec::new();
+            for load in [&row.now, &row.mean] {
+                numbers.extend(forces.clone().chain(moments.clone()).map(|k| total(load, k)));
+            }
+            numbers.extend(forces.map(|k| row.now[6 + k]));
+            numbers.push(row.largest);
+            table.row(time, &numbers)?;
+        }
+        Ok(())
+    }
+
     /// Reports particles that were taken out.
     pub fn lost<const D: usize>(&mut self, lost: &[Lost<D>]) -> Result<(), RunError> {
         for one in lost {
@@ -144,6 +178,34 @@ fn energy_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
     let mut columns = vec![("kinetic", "J"), ("potential", "J"), ("elastic", "J")];
     columns.extend(&AXES[..dimension]);
     columns.extend([("compression", "1"), ("speed", "m/s")]);
+    columns
+}
+
+/// Components of force and moment in so many dimensions, as numbers of a load.
+fn load_axes(dimension: usize) -> (Range<usize>, Range<usize>) {
+    if dimension == 2 { (0..2, 5..6) } else { (0..3, 3..6) }
+}
+
+fn load_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
+    // In two dimensions a load is that on a metre of depth.
+    let (force, moment) = if dimension == 2 { ("N/m", "N") } else { ("N", "N m") };
+    let (forces, moments) = load_axes(dimension);
+    let names = |names: [&'static str; 6]| {
+        let of = |k: usize| (names[k], if k < 3 { force } else { moment });
+        forces.clone().chain(moments.clone()).map(of).collect::<Vec<_>>()
+    };
+    let mut columns = names(["force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"]);
+    columns.extend(names([
+        "mean_force_x",
+        "mean_force_y",
+        "mean_force_z",
+        "mean_moment_x",
+        "mean_moment_y",
+        "mean_moment_z",
+    ]));
+    let friction = ["friction_force_x", "friction_force_y", "friction_force_z"];
+    columns.extend(friction[..dimension].iter().map(|name| (*name, force)));
+    columns.push(("largest_force", force));
     columns
 }
 

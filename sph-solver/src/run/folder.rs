@@ -170,7 +170,10 @@ fn is_checkpoint(name: &str) -> bool {
 
 fn is_table(folder: &Path, name: &str) -> bool {
     let Some(stem) = name.strip_suffix(".csv") else { return false };
-    if !matches!(stem, "energies" | "lost") && !stem.starts_with("probe-") {
+    if !matches!(stem, "energies" | "lost")
+        && !stem.starts_with("probe-")
+        && !stem.starts_with("solid-")
+    {
         return false;
     }
     let mut head = String::new();

@@ -5,6 +5,7 @@ use super::samples::{Quantity, value};
 use crate::error::RunError;
 use crate::model::Model;
 use crate::simulation::FullStep;
+use crate::space;
 use sph_decomp::{Communicator, ExactSum, global_sums};
 
 /// The fluid at one moment, to be read at places between its particles.
@@ -16,7 +17,7 @@ pub struct Field<'a, const D: usize> {
     /// Particles of this rank.
     pub full: &'a FullStep<D>,
     /// The kernel as a function of the distance divided by the support radius, in any unit.
-    pub weight: &'a dyn Fn(f64) -> f64,
+    pub weight: fn(f64) -> f64,
 }
 
 /// Points of a column that are looked at together, from the top.
@@ -31,14 +32,17 @@ impl<const D: usize> Field<'_, D> {
         let stride = 1 + quantities.len();
         let radius = self.model.support_radius;
         let mut sums = vec![ExactSum::new(); stride * points.len()];
-        let (lower, upper) = around(points, radius);
+        let periods = &self.model.periods;
+        let (middle, half) = around(points, radius);
         for (i, x) in self.full.position.iter().enumerate() {
-            if (0..D).any(|k| x[k] < lower[k] || x[k] > upper[k]) {
+            let offset = space::offset(x, &middle, periods);
+            if (0..D).any(|k| offset[k].abs() > half[k]) {
                 continue;
             }
             let volume = self.full.mass[i] / self.full.density[i];
             for (point, sums) in points.iter().zip(sums.chunks_exact_mut(stride)) {
-                let distance = (0..D).map(|k| (x[k] - point[k]).powi(2)).sum::<f64>().sqrt();
+                let offset = space::offset(x, point, periods);
+                let distance = offset.iter().map(|d| d * d).sum::<f64>().sqrt();
                 if distance >= radius {
                     continue;
                 }
@@ -82,7 +86,7 @@ impl<const D: usize> Field<'_, D> {
         // Heights of the fluid near the line: the highest, and the lowest with its sign turned.
         let mut ends = [f64::NEG_INFINITY; 2];
         for x in &self.full.position {
-            let offset: [f64; D] = std::array::from_fn(|k| x[k] - at[k]);
+            let offset = space::offset(x, at, &self.model.periods);
             let along = height(&offset);
             let aside = (0..D).map(|k| (offset[k] - along * up[k]).powi(2)).sum::<f64>();
             if aside < radius * radius {
@@ -122,11 +126,11 @@ impl<const D: usize> Field<'_, D> {
     pub fn flow(&self, at: &[f64; D], normal: &[f64; D]) -> Result<f64, RunError> {
         let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
         let dot = |x: &[f64; D]| (0..D).map(|k| x[k] * normal[k]).sum::<f64>() / length;
-        let place = dot(at);
         let spacing = self.model.spacing;
         let mut sum = ExactSum::new();
         for (i, x) in self.full.position.iter().enumerate() {
-            let weight = 1.0 - (dot(x) - place).abs() / spacing;
+            let offset = space::offset(x, at, &self.model.periods);
+            let weight = 1.0 - dot(&offset).abs() / spacing;
             if weight > 0.0 {
                 let volume = self.full.mass[i] / self.full.density[i];
                 sum.add(weight * volume / spacing * dot(&self.full.velocity[i]));
@@ -200,12 +204,15 @@ fn axes<const D: usize>(normal: Option<&[f64; D]>) -> [[f64; D]; D] {
     axes
 }
 
-/// The box that holds everything within `radius` of the points.
+/// Middle and half sides of the box that holds everything within `radius` of the points.
 fn around<const D: usize>(points: &[[f64; D]], radius: f64) -> ([f64; D], [f64; D]) {
     let along = |k: usize| points.iter().map(move |point| point[k]);
+    let lower = |k: usize| along(k).fold(f64::INFINITY, f64::min);
+    let upper = |k: usize| along(k).fold(f64::NEG_INFINITY, f64::max);
     (
-        std::array::from_fn(|k| along(k).fold(f64::INFINITY, f64::min) - radius),
-        std::array::from_fn(|k| along(k).fold(f64::NEG_INFINITY, f64::max) + radius),
+        std::array::from_fn(|k| 0.5 * (lower(k) + upper(k))),
+        // More by what the middle is rounded.
+        std::array::from_fn(|k| 0.5 * (upper(k) - lower(k)) + 1.001 * radius),
     )
 }
 

@@ -79,6 +79,7 @@ fn particles<const D: usize>(scene: &Scene, all: &Particles<D>) -> Values {
     if let Some(domain) = &scene.domain {
         values.set("domain", &format!("{:?} to {:?}", *domain.min, *domain.max));
     }
+    values.set("periodic", &format!("{:?}", scene.periodic_axes::<D>()));
     values.set("numerics.spacing", &*numerics.spacing);
     values.set("numerics.support", &*numerics.support);
     values.set("numerics.scheme", &word(&numerics.scheme));
@@ -141,6 +142,13 @@ fn settings(scene: &Scene, end_time: f64, checkpoints: Option<f64>) -> Values {
             format!("fluid.{name}.viscosity"),
             &fluid.viscosity.as_deref().copied().unwrap_or(0.0),
         );
+        let lowest = fluid.cavitation_pressure.as_deref().copied().unwrap_or(f64::NEG_INFINITY);
+        values.set(format!("fluid.{name}.cavitation_pressure"), &lowest);
+    }
+    for solid in &scene.solid {
+        let friction = solid.wall_friction.as_ref().map(|friction| word(&friction.value));
+        let path = format!("solid {}.wall_friction", *solid.name);
+        values.set(path, &friction.unwrap_or_else(|| "as the fluid".into()));
     }
     let output = &scene.output;
     let mut interval = |key: &str, seconds: Option<f64>| {

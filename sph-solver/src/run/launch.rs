@@ -14,7 +14,7 @@ use super::summary::{Meta, Summary};
 use super::table::{Features, Job, Precision, Viscosity, run_job};
 use super::world::World;
 use crate::error::RunError;
-use crate::model::{Model, OnLost};
+use crate::model::{Model, OnLost, SolidModel};
 use crate::scene::{self, At, Field, ProbeKind, Scene};
 use crate::setup::{Constants, Particles, Setup};
 use crate::team::Team;
@@ -101,9 +101,9 @@ impl<const D: usize> Launch<D> {
     fn new(scene: &Scene, options: &RunOptions, stop: Stop) -> Result<Self, RunError> {
         let setup = Setup::<D>::new(scene)?;
         let notes = setup.notes();
-        let Setup { particles, constants, .. } = setup;
+        let Setup { particles, constants, solids, .. } = setup;
         let features = features(scene, &constants, &particles);
-        let model = model(&constants);
+        let model = model(&constants, solids);
         let fingerprint = fingerprint(&model, &features, &particles);
         let output = &scene.output;
         let end_time = options.end_time.unwrap_or(*scene.end_time);
@@ -192,13 +192,15 @@ impl<const D: usize> Launch<D> {
         );
         check_same_build(&comm, tag.as_bytes())?;
         let silent = |_: Status| ();
+        let (state, elements) = self.shares.take(comm);
         let mut summary = run_job(
             Job {
                 comm,
                 team: Team::new(threads)?,
                 model: self.model.clone(),
                 plan: &self.plan,
-                state: self.shares.take(comm),
+                state,
+                elements,
                 watch: if comm.rank() == 0 { watch } else { &silent },
                 meta: Meta {
                     name: self.plan.name.clone(),
@@ -218,7 +220,7 @@ impl<const D: usize> Launch<D> {
     }
 }
 
-fn model<const D: usize>(constants: &Constants<D>) -> Model<D> {
+fn model<const D: usize>(constants: &Constants<D>, solids: Vec<SolidModel<D>>) -> Model<D> {
     Model {
         spacing: constants.spacing,
         support_radius: constants.support_radius,
@@ -227,6 +229,10 @@ fn model<const D: usize>(constants: &Constants<D>) -> Model<D> {
         equation_of_state: constants.equation_of_state,
         limits: constants.step_limits(),
         domain: constants.domain,
+        periods: constants.periods,
+        closed: constants.closed,
+        lowest_pressure: constants.cavitation_pressure.unwrap_or(f64::NEG_INFINITY),
+        solids,
         on_lost: match constants.on_lost {
             scene::OnLost::Stop => OnLost::Stop,
             scene::OnLost::Remove => OnLost::Remove,
@@ -250,6 +256,7 @@ fn features<const D: usize>(
             (_, alpha) if alpha > 0.0 => Viscosity::Artificial(alpha),
             _ => Viscosity::None,
         },
+        shifting: scene.numerics.scheme == scene::Scheme::DeltaPlus,
         walls: particles.kind.last().is_some_and(|&kind| kind > 0),
     }
 }

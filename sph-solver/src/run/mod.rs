@@ -10,6 +10,7 @@ pub mod gather;
 pub mod gauges;
 pub mod identity;
 pub mod launch;
+pub mod load_log;
 pub mod notes;
 pub mod plan;
 pub mod samples;

@@ -2,10 +2,10 @@
 
 use super::gauges::Field;
 use crate::error::RunError;
+use crate::kernel_shape::KernelShape;
 use crate::model::Model;
 use crate::simulation::FullStep;
 use sph_decomp::{Communicator, ExactSum, global_sums};
-use sph_kernels::Kernel;
 
 /// What a probe reads at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,13 +112,14 @@ pub fn budget<const D: usize>(
 
 /// Reads a probe; one number per column of [`Probe::columns`], NaN where there is nothing to read: at a
 /// point without fluid within one support radius, for a front or level without fluid. Collective.
-pub fn read<const D: usize, K: Kernel>(
+pub fn read<const D: usize>(
     comm: &dyn Communicator,
     model: &Model<D>,
+    kernel: &KernelShape,
     full: &FullStep<D>,
     probe: &Probe<D>,
 ) -> Result<Vec<f64>, RunError> {
-    let field = Field { comm, model, full, weight: &K::w };
+    let field = Field { comm, model, full, weight: kernel.w };
     match probe {
         Probe::Patch { points, quantities } => field.means(points, quantities),
         Probe::Level { at } => Ok(vec![field.level(at)?]),

@@ -3,6 +3,7 @@
 use super::checkpoints::share;
 use crate::setup::Particles;
 use crate::state::State;
+use crate::walls::WallElements;
 use sph_decomp::Communicator;
 use std::sync::{Mutex, PoisonError};
 
@@ -26,23 +27,17 @@ impl<const D: usize> Shares<D> {
         self.len
     }
 
-    /// The share of a rank, which takes it once.
-    pub fn take(&self, comm: &dyn Communicator) -> State<D> {
-        let share = share(comm, self.len);
+    /// The shares of a rank of fluid and walls, which takes them once.
+    pub fn take(&self, comm: &dyn Communicator) -> (State<D>, WallElements<D>) {
         let mut rest = self.rest.lock().unwrap_or_else(PoisonError::into_inner);
         let (all, ranks) = &mut *rest;
-        let state = State {
-            id: share.clone().map(|i| i as u64).collect(),
-            kind: all.kind[share.clone()].to_vec(),
-            mass: all.mass[share.clone()].to_vec(),
-            density: all.density[share.clone()].to_vec(),
-            position: all.position[share.clone()].to_vec(),
-            velocity: all.velocity[share].to_vec(),
-        };
+        let fluid = all.fluid().len();
+        let state = all.state(share(comm, fluid));
+        let walls = all.walls(share(comm, all.len() - fluid));
         *ranks = ranks.saturating_sub(1);
         if *ranks == 0 {
             *all = Particles::default();
         }
-        state
+        (state, walls)
     }
 }

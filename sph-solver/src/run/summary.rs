@@ -2,15 +2,15 @@
 
 use super::cpu_time::cpu_seconds;
 use super::driver::Finished;
+use super::load_log::LoadTotal;
 use super::samples::Budget;
 use crate::error::RunError;
-use crate::physics::Physics;
 use crate::simulation::Simulation;
 use crate::timings::Phase;
 use bytemuck::Pod;
 use serde::Serialize;
 use sph_decomp::Communicator;
-use sph_kernels::{Kernel, Real};
+use sph_kernels::Real;
 
 /// What the caller of a run knows about it.
 #[derive(Debug, Clone)]
@@ -110,6 +110,8 @@ pub struct Summary {
     pub compression: f64,
     /// Particles taken out because they left the domain.
     pub lost_particles: u64,
+    /// Loads on the solids over the whole run.
+    pub solids: Vec<SolidLoad>,
     /// Snapshots written by this process.
     pub snapshots: u64,
     /// Time at which this process took over from a checkpoint, s.
@@ -163,17 +165,12 @@ pub struct Energy {
 }
 
 /// Puts the summary together from all ranks; all of them get the same. Collective.
-pub fn summarize<const D: usize, S, K, P>(
+pub fn summarize<const D: usize, S: Real + Pod>(
     comm: &dyn Communicator,
-    simulation: &Simulation<'_, D, S, K, P>,
+    simulation: &Simulation<'_, D, S>,
     finished: &Finished<D>,
     meta: Meta,
-) -> Result<Summary, RunError>
-where
-    S: Real + Pod,
-    K: Kernel,
-    P: Physics<D>,
-{
+) -> Result<Summary, RunError> {
     let rank = simulation.rank();
     let counters = simulation.counters();
     let (fluid, solid) = (rank.fluid, rank.solid);
@@ -185,7 +182,7 @@ where
         counters.pairs,
         rank.bytes() as u64,
         fluid.outer as u64,
-        rank.near_fluid.pairs() + rank.near_walls.pairs(),
+        rank.pairs(),
         exposed.messages,
         exposed.bytes_sent,
     ];
@@ -268,12 +265,31 @@ where
         momentum: last.momentum.to_vec(),
         compression: last.compression,
         lost_particles: finished.lost,
+        solids: finished.loads.iter().map(|(name, load)| SolidLoad::of::<D>(name, load)).collect(),
         snapshots: finished.snapshots,
         resumed_at: finished.resumed_at,
         // The caller collects them.
         notes: Vec::new(),
         state_digest: finished.digest.to_string(),
     })
+}
+
+/// The load on a solid over a run (per metre of depth in two dimensions).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SolidLoad {
+    /// Name of the solid.
+    pub name: String,
+    /// Largest magnitude of the force, N.
+    pub largest_force: f64,
+    /// Time integral of the force, N s.
+    pub impulse: Vec<f64>,
+}
+
+impl SolidLoad {
+    fn of<const D: usize>(name: &str, load: &LoadTotal) -> Self {
+        let impulse = (0..D).map(|k| load.impulse[k] + load.impulse[6 + k]).collect();
+        Self { name: name.into(), largest_force: load.largest, impulse }
+    }
 }
 
 impl Energy {

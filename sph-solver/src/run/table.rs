@@ -1,21 +1,22 @@
-//! The table from what a scene models to the loop compiled for exactly that.
+//! From what a scene models to the sums compiled for exactly that.
 //!
-//! Adding a term means a file in [`crate::terms`] and a line here. The table is a choice, not the
-//! full product of all options: library users compose [`Terms`] themselves.
+//! Adding a term means a file in [`crate::terms`] and a line here. Every group of pairs is chosen by
+//! itself, so that choices add up and do not multiply; library users compose a
+//! [`Scheme`] themselves.
 
-use super::driver::{Finished, Status, drive};
+use super::driver::{Status, drive};
 use super::plan::RunPlan;
 use super::summary::{Meta, Summary, summarize};
 use crate::error::RunError;
 use crate::model::Model;
-use crate::physics::{Physics, Terms};
-use crate::simulation::Simulation;
+use crate::scheme::Scheme;
 use crate::state::State;
 use crate::team::Team;
 use crate::terms::{
-    ArtificialViscosity, Continuity, DeltaContinuity, LaminarViscosity, OneSidedRiemannWall,
-    PairTerm, Pressure, SymmetricPressure,
+    ArtificialViscosity, Continuity, DeltaContinuity, LaminarViscosity, NoSlip, Shifting,
+    SymmetricPressure, WallContinuity, WallPressure,
 };
+use crate::walls::WallElements;
 use bytemuck::Pod;
 use sph_decomp::Communicator;
 use sph_kernels::{Real, WendlandC2};
@@ -29,6 +30,8 @@ pub struct Features {
     pub density_diffusion: f64,
     /// Friction in the fluid.
     pub viscosity: Viscosity,
+    /// Whether particles are shifted.
+    pub shifting: bool,
     /// Whether there are walls.
     pub walls: bool,
 }
@@ -63,78 +66,80 @@ pub struct Job<'a, const D: usize> {
     pub model: Model<D>,
     /// Outputs.
     pub plan: &'a RunPlan<D>,
-    /// Particles that this rank begins with.
+    /// Fluid that this rank begins with.
     pub state: State<D>,
+    /// Elements of walls that this rank begins with.
+    pub elements: WallElements<D>,
     /// Called after each step.
     pub watch: &'a (dyn Fn(Status) + Sync),
     /// What the summary says about the set-up.
     pub meta: Meta,
 }
 
-/// Runs a job with the loop that its features call for. Collective.
+/// Runs a job with the sums that its features call for. Collective.
 pub fn run_job<const D: usize>(job: Job<'_, D>, features: Features) -> Result<Summary, RunError> {
     match features.precision {
-        Precision::Mixed => by_viscosity::<D, f32>(job, features),
-        Precision::Double => by_viscosity::<D, f64>(job, features),
+        Precision::Mixed => run_in::<D, f32>(job, &features),
+        Precision::Double => run_in::<D, f64>(job, &features),
     }
 }
 
-fn by_viscosity<const D: usize, S: Real + Pod>(
+fn run_in<const D: usize, S: Real + Pod>(
     job: Job<'_, D>,
-    features: Features,
+    features: &Features,
 ) -> Result<Summary, RunError> {
-    let (model, pressure) = (&job.model, SymmetricPressure);
-    let (h, sound_speed) = (model.limits.smoothing_length, model.limits.sound_speed);
-    let softening = 0.01 * h * h;
-    let wall = OneSidedRiemannWall { gravity: model.gravity, sound_speed };
-    match features.viscosity {
-        Viscosity::None => by_walls::<D, S, _, _>(job, features, pressure, wall),
-        Viscosity::Artificial(alpha) => {
-            let strength = alpha * h * sound_speed * model.equation_of_state.density0();
-            let friction = ArtificialViscosity { strength, softening };
-            by_walls::<D, S, _, _>(job, features, (pressure, friction), wall)
-        }
-        Viscosity::Laminar(dynamic_viscosity) => {
-            let friction = LaminarViscosity { dynamic_viscosity, softening };
-            by_walls::<D, S, _, _>(job, features, (pressure, friction), (wall, friction))
-        }
-    }
+    let scheme = delta_scheme::<D, S>(&job.model, features);
+    let Job { comm, team, model, plan, state, elements, watch, meta } = job;
+    let (simulation, finished) = drive(comm, team, model, scheme, state, elements, plan, watch)?;
+    summarize(comm, &simulation, &finished, meta)
 }
 
-fn by_walls<const D: usize, S: Real + Pod, FF, WF>(
-    job: Job<'_, D>,
-    features: Features,
-    fluid_force: FF,
-    wall_force: WF,
-) -> Result<Summary, RunError>
-where
-    FF: PairTerm<D, Pressure> + 'static,
-    WF: PairTerm<D, Pressure> + 'static,
-{
-    let model = &job.model;
-    let sound_speed = model.limits.sound_speed;
-    let stiffness = model.equation_of_state.density0() / (sound_speed * sound_speed);
-    let fluid_density = DeltaContinuity {
-        strength: features.density_diffusion * model.limits.smoothing_length * sound_speed,
+/// δ-SPH with what a scene models.
+fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) -> Scheme<D, S> {
+    type K = WendlandC2;
+    let (h, sound_speed) = (model.limits.smoothing_length, model.limits.sound_speed);
+    let density0 = model.equation_of_state.density0();
+    let softening = 0.01 * h * h;
+    let stiffness = density0 / (sound_speed * sound_speed);
+    let diffusion = DeltaContinuity {
+        strength: features.density_diffusion * h * sound_speed,
         hydrostatic_gradient: model.gravity.map(|g| g * stiffness),
     };
-    if features.walls {
-        finish::<D, S, _>(
-            job,
-            Terms { fluid_density, fluid_force, wall_density: Continuity, wall_force },
-        )
-    } else {
-        let terms = Terms { fluid_density, fluid_force, wall_density: (), wall_force: () };
-        finish::<D, S, _>(job, terms)
+    let pressure = SymmetricPressure;
+    let builder = match (features.viscosity, features.density_diffusion > 0.0) {
+        (Viscosity::None, true) => Scheme::new::<K>(diffusion, pressure),
+        (Viscosity::None, false) => Scheme::new::<K>(Continuity, pressure),
+        (Viscosity::Artificial(alpha), diffusive) => {
+            let strength = alpha * h * sound_speed * density0;
+            let force = (pressure, ArtificialViscosity { strength, softening });
+            if diffusive {
+                Scheme::new::<K>(diffusion, force)
+            } else {
+                Scheme::new::<K>(Continuity, force)
+            }
+        }
+        (Viscosity::Laminar(dynamic_viscosity), diffusive) => {
+            let force = (pressure, LaminarViscosity { dynamic_viscosity });
+            if diffusive {
+                Scheme::new::<K>(diffusion, force)
+            } else {
+                Scheme::new::<K>(Continuity, force)
+            }
+        }
+    };
+    let shifting = Shifting::<K>::new(model.support_radius, model.spacing);
+    let builder = if features.shifting { builder.shifting(shifting) } else { builder };
+    if !features.walls {
+        return builder.build();
     }
-}
-
-fn finish<const D: usize, S: Real + Pod, P: Physics<D>>(
-    job: Job<'_, D>,
-    physics: P,
-) -> Result<Summary, RunError> {
-    let Job { comm, team, model, plan, state, watch, meta } = job;
-    let (simulation, finished): (Simulation<'_, D, S, WendlandC2, P>, Finished<D>) =
-        drive(comm, team, model, physics, state, plan, watch)?;
-    summarize(comm, &simulation, &finished, meta)
+    let wall = WallPressure { sound_speed };
+    let builder = builder.walls(WallContinuity, wall);
+    let builder = if features.shifting { builder.wall_shifting(shifting) } else { builder };
+    match features.viscosity {
+        Viscosity::Laminar(dynamic_viscosity) => {
+            let smallest_distance = 0.25 * model.spacing;
+            builder.friction(NoSlip { dynamic_viscosity, smallest_distance }).build()
+        }
+        _ => builder.build(),
+    }
 }

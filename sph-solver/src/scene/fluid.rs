@@ -18,6 +18,10 @@ pub struct Fluid {
     /// Dynamic viscosity, Pa s. Absent or 0: inviscid, and the term costs nothing.
     #[schemars(extend("minimum" = 0))]
     pub viscosity: Option<At<f64>>,
+    /// Lowest pressure of the fluid, Pa, at most 0: there it cavitates instead of being pulled any
+    /// further. Without it, fluid that is away from its free surface holds any tension, also at walls.
+    #[schemars(extend("maximum" = 0))]
+    pub cavitation_pressure: Option<At<f64>>,
     /// Where the fluid is at the start. A point in several regions belongs to the first of them.
     #[schemars(extend("minItems" = 1))]
     pub regions: At<Vec<At<Region>>>,

@@ -40,5 +40,5 @@ pub use root::Scene;
 pub(crate) use root::vector;
 pub use schema::json_schema;
 pub use shape::{AxisKeys, BoxKeys, PlaneKeys, Shape, ShapeKeys, SphereKeys};
-pub use solid::{FluidSide, Solid};
+pub use solid::{FluidSide, Solid, WallFriction};
 pub(crate) use suggest::nearest;

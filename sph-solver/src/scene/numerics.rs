@@ -79,6 +79,10 @@ pub enum Scheme {
     /// Weakly compressible with density diffusion (δ-SPH: Antuono et al. 2010, Marrone et al. 2011).
     #[default]
     Delta,
+    /// The same with particles that are away from a free surface shifted to where there are too few of
+    /// them (δ⁺-SPH: Sun et al. 2017, 2019): keeps closed viscous flows even, at the price of one
+    /// more sweep.
+    DeltaPlus,
 }
 
 /// Smoothing kernel.

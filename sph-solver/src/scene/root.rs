@@ -9,7 +9,7 @@ use super::located::At;
 use super::numerics::Numerics;
 use super::output::Output;
 use super::overrides;
-use super::probe::Probe;
+use super::probe::{Axis, Probe};
 use super::reader;
 use super::solid::Solid;
 use schemars::JsonSchema;
@@ -34,6 +34,10 @@ pub struct Scene {
     pub gravity: Option<At<Vec<f64>>>,
     /// The box that particles may be in.
     pub domain: Option<At<Domain>>,
+    /// Axes along which the domain repeats: what leaves it on one side comes in on the other. Needs a
+    /// [domain] that is a whole number of spacings long along them.
+    #[serde(default)]
+    pub periodic: At<Vec<At<Axis>>>,
     /// Resolution, scheme and its constants.
     pub numerics: Numerics,
     /// Fluids by name; exactly one for now.
@@ -155,6 +159,11 @@ impl Scene {
     /// Gravity, m/s²; zero when the scene has none.
     pub fn gravity<const D: usize>(&self) -> [f64; D] {
         vector(self.gravity.as_ref().map_or(&[], |gravity| gravity.as_slice()))
+    }
+
+    /// Whether the domain repeats along each axis.
+    pub fn periodic_axes<const D: usize>(&self) -> [bool; D] {
+        std::array::from_fn(|axis| self.periodic.iter().any(|name| name.index() == axis))
     }
 
     /// Dynamic viscosity of the fluid, Pa s, if it has one.

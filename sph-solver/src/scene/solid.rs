@@ -3,7 +3,7 @@
 use super::located::At;
 use super::shape::with_shape_keys;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 with_shape_keys! {
     /// A solid that does not move: exactly one shape.
@@ -13,7 +13,23 @@ with_shape_keys! {
         /// On which side of the surface the fluid is: "inside" for a tank, "outside" for an obstacle.
         /// Needed for every shape but `plane`, which keeps the fluid on the side of its normal.
         fluid_side: Option<At<FluidSide>>,
+        /// Whether the fluid slips along the wall: "slip" or "no-slip". When absent, an inviscid fluid
+        /// slips and a fluid with a viscosity does not.
+        wall_friction: Option<At<WallFriction>>,
+        /// The point that the moments of the load on this solid are about, m. The middle of its
+        /// bounding box when absent; the origin along axes where that has no end.
+        moments_about: Option<At<Vec<f64>>>,
     }
+}
+
+/// What a wall does to fluid that moves along it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum WallFriction {
+    /// Nothing: only the velocity into the wall is felt.
+    Slip,
+    /// The fluid at the wall moves with it. Needs a fluid with a viscosity.
+    NoSlip,
 }
 
 /// A side of a closed surface.

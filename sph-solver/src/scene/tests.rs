@@ -128,11 +128,33 @@ fn unknown_keys_show_the_nearest_one() {
     assert_edit("axis =", "axes =", (32, 1), "in [probe.1]", "did you mean `axis`?");
     assert_edit(
         "dimension",
-        "periodic = [\"y\"]\ndimension",
+        "surface_tension = 1\ndimension",
         (2, 1),
-        "unknown key `periodic`",
+        "unknown key `surface_tension`",
         "keys here: `name`",
     );
+}
+
+#[test]
+fn a_periodic_scene_needs_a_domain_and_axes_that_exist() {
+    let periodic = |axes: &str| format!("periodic = {axes}\ndimension");
+    for (axes, column, message) in [
+        ("[\"x\"]", 12, "a periodic scene needs a domain that repeats"),
+        ("[\"z\"]", 13, "there is no axis z in 2 dimensions"),
+        ("[\"x\", \"x\"]", 18, "the axis x is named twice"),
+    ] {
+        assert_edit("dimension", &periodic(axes), (2, column), message, "");
+    }
+}
+
+#[test]
+fn a_wall_without_slip_needs_a_viscosity() {
+    let no_slip = "fluid_side = \"inside\"\nwall_friction = \"no-slip\"";
+    let text = SCENE.replace("fluid_side = \"inside\"", no_slip);
+    assert!(read(&text).is_ok());
+    let error = read(&text.replace("viscosity = 0.001", "viscosity = 0"));
+    let message = "a wall without slip needs a fluid with a viscosity";
+    assert_error(error, ("test.toml", 23, 17), message, "wall_friction = \"slip\"");
 }
 
 #[test]

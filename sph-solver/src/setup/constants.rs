@@ -33,9 +33,15 @@ pub struct Constants<const D: usize> {
     pub density_diffusion: f64,
     /// Dynamic viscosity μ of the fluid, Pa s, if it has one.
     pub viscosity: Option<f64>,
+    /// Whether the fluid fills all the space that it can be in.
+    pub closed: bool,
+    /// Lowest pressure of the fluid, Pa, if it cavitates.
+    pub cavitation_pressure: Option<f64>,
     /// Lowest and highest corner of the box that particles may be in, m.
     pub domain: ([f64; D], [f64; D]),
-    /// What to do with a particle outside of it.
+    /// Lengths after which the axes repeat, m; none for an open axis.
+    pub periods: [Option<f64>; D],
+    /// What to do with a particle outside of the domain.
     pub on_lost: OnLost,
 }
 
@@ -134,7 +140,10 @@ mod tests {
             artificial_viscosity: 0.02,
             density_diffusion: 0.1,
             viscosity: None,
+            closed: false,
+            cavitation_pressure: None,
             domain: ([0.0; 2], [1.0; 2]),
+            periods: [None; 2],
             on_lost: OnLost::Stop,
         }
     }

@@ -1,6 +1,6 @@
 //! The box that particles may be in.
 
-use crate::scene::{ErrorKind, Fluid, Scene, SceneError, vector};
+use crate::scene::{ErrorKind, Fluid, Place, Scene, SceneError, vector};
 use sph_geometry::{Aabb, FluidSide, Solid};
 
 /// The domain of a scene: its `[domain]`, or else
@@ -30,6 +30,51 @@ pub fn domain<const D: usize>(
         let longest = (0..D).map(|axis| all.max[axis] - all.min[axis]).fold(0.0, f64::max);
         all.inflated(longest.max(2.0 * support_radius))
     }
+}
+
+/// The periods of the axes that repeat. Between two images of a particle there must be room for its
+/// support and that of its neighbours, and the lattice must go on across the sides.
+pub fn periods<const D: usize>(
+    scene: &Scene,
+    domain: &Aabb<D>,
+    spacing: f64,
+    reach: f64,
+) -> Result<[Option<f64>; D], SceneError> {
+    let mut periods = [None; D];
+    for (axis, periodic) in scene.periodic_axes::<D>().into_iter().enumerate() {
+        if !periodic {
+            continue;
+        }
+        let length = domain.max[axis] - domain.min[axis];
+        let name = ["x", "y", "z"][axis];
+        let place = scene.domain.as_ref().map_or(Place::default(), |domain| domain.place);
+        let refuse =
+            |what: String, help: String| Err(scene.error(place, ErrorKind::Invalid { what, help }));
+        if length < 2.0 * reach {
+            return refuse(
+                format!("the domain is {length} m long along the periodic axis {name}"),
+                format!(
+                    "make it at least {} m long: twice the support radius and the skin",
+                    2.0 * reach
+                ),
+            );
+        }
+        let cells = length / spacing;
+        if (cells - cells.round()).abs() > 1e-6 * cells {
+            return refuse(
+                format!(
+                    "the domain is {length} m long along the periodic axis {name}, which is \
+                     {cells:.3} spacings"
+                ),
+                format!(
+                    "give it a whole number of spacings, or set numerics.spacing to {}",
+                    length / cells.round()
+                ),
+            );
+        }
+        periods[axis] = Some(length);
+    }
+    Ok(periods)
 }
 
 /// Refuses fluid outside of the domain.

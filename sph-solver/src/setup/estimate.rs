@@ -19,8 +19,8 @@ impl<const D: usize> Setup<D> {
         }
         let constants = &self.constants;
         let fluid = self.particles.of_kind(0).len();
-        let solids = self.solids.iter().zip(1..).map(|(name, kind)| SolidCount {
-            name: name.clone(),
+        let solids = self.solids.iter().zip(1..).map(|(solid, kind)| SolidCount {
+            name: solid.name.clone(),
             kind,
             particles: self.particles.of_kind(kind).len(),
         });

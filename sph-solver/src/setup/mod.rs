@@ -35,6 +35,7 @@ pub use report::{
 pub use sampling::{BlockKind, Sample};
 
 use crate::eos::EquationOfState;
+use crate::model::SolidModel;
 use crate::scene::{self, At, Equation, ErrorKind, Fluid, Kernel, Region, Scene, SceneError};
 use fluid::Filling;
 use shapes::Shapes;
@@ -48,8 +49,8 @@ pub struct Setup<const D: usize> {
     pub particles: Particles<D>,
     /// Constants.
     pub constants: Constants<D>,
-    /// Names of the solids; the particles of solid k have kind 1 + k.
-    pub solids: Vec<String>,
+    /// The solids; the particles of solid k have kind 1 + k.
+    pub solids: Vec<SolidModel<D>>,
     /// Largest speed expected in the run, m/s.
     pub expected_speed: f64,
     /// Largest speed at the start, m/s.
@@ -109,16 +110,19 @@ impl<const D: usize> Setup<D> {
             artificial_viscosity: scene.artificial_viscosity(),
             density_diffusion: *numerics.density_diffusion,
             viscosity: scene.viscosity(),
+            closed: walls::is_closed(scene, &solids, &lattice, &domain, filling.position.len())?,
+            cavitation_pressure: fluid.cavitation_pressure.map(|pressure| *pressure),
             domain: (domain.min, domain.max),
+            periods: domain::periods(scene, &domain, spacing, Geometry::<D>::reach(scene))?,
             on_lost: numerics.on_lost,
         };
         let mass = density0 * spacing.powi(D as i32);
         let mut particles = filling.finish(scene, fluid, &equation_of_state, &lattice, mass)?;
-        walls::add_walls(scene, &solids, &lattice, &constants, mass, &mut particles)?;
+        walls::add_walls(scene, &solids, &lattice, &constants, &mut particles)?;
         Ok(Self {
             particles,
             constants,
-            solids: solids.into_iter().map(|solid| solid.name).collect(),
+            solids: walls::models(scene, &solids),
             expected_speed,
             initial_speed,
             volume_of_regions: volume::of_regions(&regions),

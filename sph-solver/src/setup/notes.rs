@@ -14,11 +14,12 @@ impl<const D: usize> Setup<D> {
     /// Notes about the scene.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
-        for (name, kind) in self.solids.iter().zip(1..) {
+        for (solid, kind) in self.solids.iter().zip(1..) {
             if self.particles.of_kind(kind).is_empty() {
                 notes.push(format!(
-                    "solid {name} has no particles: it is thinner than the spacing or out of reach \
-                     of the fluid"
+                    "solid {} has no particles: it is thinner than the spacing or out of reach of the \
+                     fluid",
+                    solid.name
                 ));
             }
         }

@@ -1,9 +1,11 @@
 //! The particles that a run begins with.
 
+use crate::state::State;
+use crate::walls::WallElements;
 use std::ops::Range;
 
 /// Structure of arrays over all particles: the fluid first, then the walls, solid by solid. The index
-/// of a particle is its global id.
+/// of a particle is its global id. A wall particle is an element of the wall of its solid.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Particles<const D: usize> {
     /// Positions, m.
@@ -12,10 +14,17 @@ pub struct Particles<const D: usize> {
     pub velocity: Vec<[f64; D]>,
     /// Densities, kg/m³: those that the equation of state gives for the initial pressure.
     pub density: Vec<f64>,
-    /// Masses, kg (kg/m in two dimensions): reference density times spacing to the power D.
+    /// Masses, kg (kg/m in two dimensions): reference density times spacing to the power D; walls have
+    /// none.
     pub mass: Vec<f64>,
     /// 0 for the fluid, 1 + k for solid number k of the scene.
     pub kind: Vec<u16>,
+    /// Unit normals of the wall particles alone, out of the wall into the fluid.
+    pub normal: Vec<[f64; D]>,
+    /// Volumes of the wall particles alone, m^D.
+    pub volume: Vec<f64>,
+    /// Depths of the wall particles alone below the surface, m.
+    pub depth: Vec<f64>,
 }
 
 impl<const D: usize> Particles<D> {
@@ -27,6 +36,37 @@ impl<const D: usize> Particles<D> {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
+    }
+
+    /// The fluid.
+    pub fn fluid(&self) -> Range<usize> {
+        self.of_kind(0)
+    }
+
+    /// Copies of some of the fluid, `part` of [`fluid`](Self::fluid).
+    pub fn state(&self, part: Range<usize>) -> State<D> {
+        State {
+            id: part.clone().map(|i| i as u64).collect(),
+            mass: self.mass[part.clone()].to_vec(),
+            density: self.density[part.clone()].to_vec(),
+            position: self.position[part.clone()].to_vec(),
+            velocity: self.velocity[part].to_vec(),
+            pressure_gradient: Vec::new(),
+        }
+    }
+
+    /// Copies of some of the walls, `part` of so many as there are wall particles.
+    pub fn walls(&self, part: Range<usize>) -> WallElements<D> {
+        let first = self.fluid().end;
+        let all = first + part.start..first + part.end;
+        WallElements {
+            id: all.clone().map(|i| i as u64).collect(),
+            solid: self.kind[all.clone()].iter().map(|kind| kind - 1).collect(),
+            volume: self.volume[part.clone()].to_vec(),
+            depth: self.depth[part.clone()].to_vec(),
+            position: self.position[all].to_vec(),
+            normal: self.normal[part].to_vec(),
+        }
     }
 
     /// The particles of a kind.

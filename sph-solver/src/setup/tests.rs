@@ -246,7 +246,12 @@ fn a_mesh_makes_the_walls_of_a_box() {
     let mesh = "solid=[{ name = \"tank\", box = { min = [0, 0, 0], max = [2, 1, 1.5] }, \
                 fluid_side = \"inside\" }]";
     let plain = Scene::parse("test.toml", MESHES.into(), &[mesh.into()]).unwrap();
-    assert_eq!(Setup::<3>::new(&plain).unwrap().particles, setup.particles);
+    let plain = Setup::<3>::new(&plain).unwrap().particles;
+    assert_eq!((&plain.position, &plain.kind), (&setup.particles.position, &setup.particles.kind));
+    // The distances of a mesh and of a box round differently.
+    for (a, b) in plain.depth.iter().zip(&setup.particles.depth) {
+        assert!((a - b).abs() < 1e-12, "{a} {b}");
+    }
 }
 
 #[test]

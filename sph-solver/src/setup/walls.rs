@@ -4,8 +4,11 @@ use super::constants::Constants;
 use super::particles::Particles;
 use super::shapes::Shapes;
 use super::{LARGEST, MOST_PARTICLES, lattice_error, memory, too_many};
+use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
-use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Solid, WallParticles, wall_particles};
+use sph_geometry::{
+    Aabb, Domain, FluidSide, Lattice, Solid, WallElements, free_cells, wall_elements,
+};
 
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
 const MOST_ROWS: f64 = 1e9;
@@ -35,13 +38,58 @@ pub fn solids<const D: usize>(
     scene.solid.iter().map(make).collect()
 }
 
+/// What a run knows of the solids besides their particles.
+pub fn models<const D: usize>(scene: &Scene, solids: &[Solid<D>]) -> Vec<SolidModel<D>> {
+    let viscous = scene.viscosity().is_some();
+    let model = |(solid, keys): (&Solid<D>, &At<scene::Solid>)| {
+        let bounds = solid.shape.bounding_box();
+        let middle = |k: usize| {
+            let middle = 0.5 * (bounds.min[k] + bounds.max[k]);
+            if middle.is_finite() { middle } else { 0.0 }
+        };
+        SolidModel {
+            name: solid.name.clone(),
+            center: match &keys.moments_about {
+                Some(point) => scene::vector(point),
+                None => std::array::from_fn(middle),
+            },
+            slips: match keys.wall_friction.map(|friction| *friction) {
+                Some(friction) => friction == scene::WallFriction::Slip,
+                None => !viscous,
+            },
+        }
+    };
+    solids.iter().zip(&scene.solid).map(model).collect()
+}
+
+/// Whether so many particles of fluid fill every cell that fluid can be in.
+pub fn is_closed<const D: usize>(
+    scene: &Scene,
+    solids: &[Solid<D>],
+    lattice: &Lattice<D>,
+    bounds: &Aabb<D>,
+    fluid: usize,
+) -> Result<bool, SceneError> {
+    // The larger of the two numbers is soon known where the domain is much larger than the fluid.
+    let cells = (0..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
+    if solids.is_empty() || cells.product::<f64>() > 4.0 * fluid as f64 {
+        let periodic = scene.periodic_axes::<D>().iter().all(|periodic| *periodic);
+        let cells = (0..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
+        return Ok(periodic && (cells.product::<f64>() - fluid as f64).abs() < 0.5);
+    }
+    let domain = Domain { bounds: *bounds, periodic: scene.periodic_axes() };
+    let place = scene.numerics.spacing.place;
+    let free = free_cells(solids, lattice, &domain)
+        .map_err(|error| lattice_error(scene, place, &error))?;
+    Ok(free.count() <= fluid as u64)
+}
+
 /// Adds the wall particles, solid by solid.
 pub fn add_walls<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
     lattice: &Lattice<D>,
     constants: &Constants<D>,
-    mass: f64,
     particles: &mut Particles<D>,
 ) -> Result<(), SceneError> {
     let bounds = Aabb::new(constants.domain.0, constants.domain.1);
@@ -61,21 +109,24 @@ pub fn add_walls<const D: usize>(
     order.sort_by_key(|wall| walls.solids[*wall]);
     for wall in order {
         let kind = 1 + walls.solids[wall] as u16;
-        particles.push(walls.positions[wall], [0.0; D], constants.density0, mass, kind);
+        particles.push(walls.positions[wall], [0.0; D], constants.density0, 0.0, kind);
+        particles.normal.push(walls.normals[wall]);
+        particles.volume.push(walls.volumes[wall]);
+        particles.depth.push(walls.depths[wall]);
     }
     Ok(())
 }
 
-/// The wall particles within `support` (m) of where fluid can be.
+/// The wall elements within `support` (m) of where fluid can be.
 pub fn find_walls<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
     lattice: &Lattice<D>,
     bounds: &Aabb<D>,
     support: f64,
-) -> Result<WallParticles<D>, SceneError> {
+) -> Result<WallElements<D>, SceneError> {
     if solids.is_empty() {
-        return Ok(WallParticles::default());
+        return Ok(WallElements::default());
     }
     let place = scene.domain.as_ref().map_or(scene.numerics.spacing.place, |domain| domain.place);
     let sides = (1..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
@@ -91,6 +142,7 @@ pub fn find_walls<const D: usize>(
         };
         return Err(scene.error(place, kind));
     }
-    wall_particles(solids, lattice, support, &Domain::new(*bounds))
+    let domain = Domain { bounds: *bounds, periodic: scene.periodic_axes() };
+    wall_elements(solids, lattice, support, &domain)
         .map_err(|error| lattice_error(scene, place, &error))
 }

@@ -8,22 +8,35 @@
 //! `V = m/ρ`. Every sum over pairs here is one of gradients, so a term gives only the *coefficient*
 //! in front of `∇W_ij V_j`; the sweep adds up the coefficients of a pair, multiplies once, and
 //! divides by what all pairs of a target share (see [`Quantity`]) once per target.
+//!
+//! Walls are another kind of neighbour: they know their normal n, and what a frictionless wall does
+//! lies along it, so a [`WallTerm`] has a sum of its own, see [`WallPush`].
 
 mod artificial_viscosity;
 mod continuity;
 mod delta_continuity;
 mod pressure;
 mod quantity;
+mod shifting;
 mod viscosity;
+mod wall_continuity;
+mod wall_friction;
 mod wall_pressure;
+mod wall_push;
 
 pub use artificial_viscosity::ArtificialViscosity;
 pub use continuity::Continuity;
 pub use delta_continuity::DeltaContinuity;
 pub use pressure::SymmetricPressure;
-pub use quantity::{Acceleration, Deviation, Pressure, Quantity};
+pub use quantity::{
+    Acceleration, Crowding, DensityRate, Deviation, Pressure, Quantity, Rate, VectorSum,
+};
+pub use shifting::{Shifting, shift};
 pub use viscosity::LaminarViscosity;
-pub use wall_pressure::OneSidedRiemannWall;
+pub use wall_continuity::WallContinuity;
+pub use wall_friction::NoSlip;
+pub use wall_pressure::WallPressure;
+pub use wall_push::WallPush;
 
 use sph_kernels::{Lanes, Real};
 
@@ -67,10 +80,73 @@ pub struct Pair<const D: usize, L> {
     pub per_unit: L,
 }
 
+/// What a wall term knows of the target besides [`Target`].
+#[derive(Debug, Clone, Copy)]
+pub struct BesideWall<const D: usize, L> {
+    /// ∇p/ρ, the pressure gradient in the fluid over its density, m/s².
+    pub pressure_gradient: [L; D],
+    /// Lowest pressure that the wall may have towards the target, Pa.
+    pub lowest_pressure: L,
+}
+
+/// Geometry of a pair of a target and an element of a wall, lengths in units of the records unless
+/// said otherwise.
+#[derive(Debug, Clone, Copy)]
+pub struct WallPair<const D: usize, L> {
+    /// r_iw = x_i − x_w, units.
+    pub offset: [L; D],
+    /// |r_iw|², units².
+    pub distance2: L,
+    /// n, unit vector out of the wall into the fluid.
+    pub normal: [L; D],
+    /// Depth of the element below the surface of the wall, m.
+    pub depth: L,
+    /// w with ∇W_iw V_w = w r_iw, as in [`Pair`].
+    pub weight: L,
+    /// Metres per unit.
+    pub unit: L,
+    /// Units per metre.
+    pub per_unit: L,
+}
+
+/// A contribution of the elements of a wall to a sweep whose targets carry `Q`.
+pub trait WallTerm<const D: usize, Q: Quantity>: Copy + Send + Sync {
+    /// What is summed over the elements.
+    type Total<L: Lanes>: Copy;
+
+    /// Nothing added yet.
+    fn zero<L: Lanes>() -> Self::Total<L>;
+
+    /// Adds one pair a lane. Must be finite for every pair, also for `r_iw = 0` and for pairs beyond
+    /// the support.
+    fn add<L: Lanes>(
+        &self,
+        i: &Target<D, L>,
+        beside: &BesideWall<D, L>,
+        pair: &WallPair<D, L>,
+        total: &mut Self::Total<L>,
+    );
+
+    /// What the total means for the target, see [`Quantity`].
+    fn finish<L: Lanes>(&self, i: &Target<D, L>, total: &Self::Total<L>) -> Q::Sum<D, L>;
+}
+
 /// A contribution of pairs to a sweep whose records carry `Q`.
 pub trait PairTerm<const D: usize, Q: Quantity>: Copy + Send + Sync {
     /// Whether the term adds nothing at all, so that its neighbours need not be visited.
     const EMPTY: bool = false;
+
+    /// Whether the term has a part along r_ij, which [`coefficient`](Self::coefficient) gives.
+    const CENTRAL: bool = true;
+
+    /// Whether the term has a part along v_i − v_j, which [`shear`](Self::shear) gives.
+    const SHEARS: bool = false;
+
+    /// The coefficient s of (v_i − v_j) F_ij V_j, ∇W_ij = F_ij r_ij, in place of c ∇W_ij V_j. Only
+    /// accelerations have such a part.
+    fn shear<L: Lanes>(&self, _: &Target<D, L>, _: &Source<D, L>, _: &Pair<D, L>) -> L {
+        L::zero()
+    }
 
     /// The coefficient of one pair a lane, see [`Quantity`] for what it is the coefficient of.
     ///
@@ -82,6 +158,7 @@ pub trait PairTerm<const D: usize, Q: Quantity>: Copy + Send + Sync {
 
 impl<const D: usize, Q: Quantity> PairTerm<D, Q> for () {
     const EMPTY: bool = true;
+    const CENTRAL: bool = false;
 
     #[inline(always)]
     fn coefficient<L: Lanes>(&self, _: &Target<D, L>, _: &Source<D, L>, _: &Pair<D, L>) -> L {
@@ -91,22 +168,35 @@ impl<const D: usize, Q: Quantity> PairTerm<D, Q> for () {
 
 impl<const D: usize, Q: Quantity, A: PairTerm<D, Q>, B: PairTerm<D, Q>> PairTerm<D, Q> for (A, B) {
     const EMPTY: bool = A::EMPTY && B::EMPTY;
+    const CENTRAL: bool = A::CENTRAL || B::CENTRAL;
+    const SHEARS: bool = A::SHEARS || B::SHEARS;
 
     #[inline(always)]
     fn coefficient<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, pair: &Pair<D, L>) -> L {
         // Adding a zero would be an instruction: it changes the sign of −0.
-        if B::EMPTY {
+        if !B::CENTRAL {
             self.0.coefficient(i, j, pair)
-        } else if A::EMPTY {
+        } else if !A::CENTRAL {
             self.1.coefficient(i, j, pair)
         } else {
             self.0.coefficient(i, j, pair) + self.1.coefficient(i, j, pair)
         }
     }
+
+    #[inline(always)]
+    fn shear<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, pair: &Pair<D, L>) -> L {
+        if !B::SHEARS {
+            self.0.shear(i, j, pair)
+        } else if !A::SHEARS {
+            self.1.shear(i, j, pair)
+        } else {
+            self.0.shear(i, j, pair) + self.1.shear(i, j, pair)
+        }
+    }
 }
 
-/// `strength π_ij` with `π_ij = (v_j − v_i)·r_ji / (|r_ij|² + softening)`: the form that artificial
-/// and physical viscosity share. `strength` in Pa s, `softening` in m².
+/// `strength π_ij` with `π_ij = (v_j − v_i)·r_ji / (|r_ij|² + softening)`: the form of artificial
+/// viscosity. `strength` in Pa s, `softening` in m².
 #[inline(always)]
 pub(crate) fn viscous<const D: usize, L: Lanes>(
     strength: f64,
@@ -177,13 +267,49 @@ pub(crate) mod scalar {
         )
     }
 
+    /// Target and an element of a wall with normal `normal`, `depth` below its surface; otherwise as
+    /// [`pair`].
+    pub fn wall(
+        r_iw: [f64; 2],
+        normal: [f64; 2],
+        depth: f64,
+        (velocity, quantity): ([f64; 2], f64),
+        volume: f64,
+        slope: f64,
+    ) -> (Target<2, f64>, WallPair<2, f64>) {
+        let (i, _, pair) = pair(r_iw, (velocity, [0.0; 2]), (quantity, 0.0), volume, slope);
+        let Pair { offset, distance2, weight, unit, per_unit, .. } = pair;
+        (i, WallPair { offset, distance2, normal, depth, weight, unit, per_unit })
+    }
+
+    /// What a wall term adds to the rate of the target, where ∇p/ρ is `gradient`.
+    pub fn wall_rate<Q: Quantity, T: WallTerm<2, Q>>(
+        term: &T,
+        (i, pair): &(Target<2, f64>, WallPair<2, f64>),
+        pressure_gradient: [f64; 2],
+        lowest_pressure: f64,
+    ) -> Q::Rate<2> {
+        let mut total = T::zero();
+        term.add(i, &BesideWall { pressure_gradient, lowest_pressure }, pair, &mut total);
+        let sum = term.finish(i, &total);
+        let mut rates = [Q::Rate::default()];
+        Q::rates(&sum, &[i.density], &mut rates);
+        rates[0]
+    }
+
     /// What a term adds to the rate of the target.
     pub fn rate<Q: Quantity, T: PairTerm<2, Q>>(
         term: &T,
         (i, j, pair): &(Target<2, f64>, Source<2, f64>, Pair<2, f64>),
     ) -> Q::Rate<2> {
         let mut sum = Q::zero();
-        Q::add(&mut sum, term.coefficient(i, j, pair), pair);
+        if T::CENTRAL {
+            Q::add(&mut sum, term.coefficient(i, j, pair), pair);
+        }
+        if T::SHEARS {
+            let velocity = difference(&i.velocity, &j.velocity);
+            Q::add_shear(&mut sum, term.shear(i, j, pair), &velocity, pair);
+        }
         let mut rates = [Q::Rate::default()];
         Q::rates(&sum, &[i.density], &mut rates);
         rates[0]

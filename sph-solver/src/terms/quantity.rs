@@ -1,14 +1,22 @@
 //! What a sweep reads and returns.
 
-use super::Pair;
+use super::{Pair, lanes};
 use sph_kernels::{Lanes, Real};
 use sph_neighbors::CLUSTER;
+use std::ops::AddAssign;
+
+/// What a group of pairs contributes to the change of a particle. Groups add up.
+pub trait Rate: Copy + Default + Send + Sync + AddAssign + 'static {}
+
+impl Rate for DensityRate {}
+
+impl<const D: usize> Rate for Acceleration<D> {}
 
 /// What word 6 of the records holds while a sweep runs, what the coefficients of its terms multiply,
 /// and what it returns.
 pub trait Quantity: Copy + Send + Sync + 'static {
     /// Result per target.
-    type Rate<const D: usize>: Copy + Default + Send + Sync;
+    type Rate<const D: usize>: Rate;
     /// Sum over the pairs of a target, one target a lane.
     type Sum<const D: usize, L: Lanes>: Copy;
 
@@ -17,6 +25,16 @@ pub trait Quantity: Copy + Send + Sync + 'static {
 
     /// Adds one pair a lane.
     fn add<const D: usize, L: Lanes>(sum: &mut Self::Sum<D, L>, coefficient: L, pair: &Pair<D, L>);
+
+    /// Adds s (v_i − v_j) F V of one pair a lane, see [`PairTerm::shear`](super::PairTerm::shear).
+    #[inline(always)]
+    fn add_shear<const D: usize, L: Lanes>(
+        _: &mut Self::Sum<D, L>,
+        _: L,
+        _: &[L; D],
+        _: &Pair<D, L>,
+    ) {
+    }
 
     /// The results of the targets in the first lanes, given their densities in kg/m³.
     fn rates<const D: usize, L: Lanes>(
@@ -27,8 +45,8 @@ pub trait Quantity: Copy + Send + Sync + 'static {
 }
 
 /// Records carry the density deviation ρ − ρ0 (kg/m³). A term gives c, with
-/// `dρ_i/dt = ρ_i Σ_j c w`, where `w r_ij = ∇W_ij V_j` with r_ij in units. The sweep returns dρ/dt,
-/// kg/m³/s.
+/// `dρ_i/dt = ρ_i Σ_j c w`, where `w r_ij = ∇W_ij V_j` with r_ij in units. The sweep returns
+/// [`DensityRate`].
 #[derive(Debug, Clone, Copy)]
 pub struct Deviation;
 
@@ -37,9 +55,63 @@ pub struct Deviation;
 #[derive(Debug, Clone, Copy)]
 pub struct Pressure;
 
+/// Records carry anything: only places count. A term gives c, and the sweep returns Σ_j c ∇W_ij V_j, 1/m.
+#[derive(Debug, Clone, Copy)]
+pub struct Crowding;
+
+/// A sum of gradients, 1/m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VectorSum<const D: usize>(pub [f64; D]);
+
+impl<const D: usize> Rate for VectorSum<D> {}
+
+impl<const D: usize> Default for VectorSum<D> {
+    fn default() -> Self {
+        Self([0.0; D])
+    }
+}
+
+impl<const D: usize> AddAssign for VectorSum<D> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        for (sum, part) in self.0.iter_mut().zip(other.0) {
+            *sum += part;
+        }
+    }
+}
+
+/// What the density sweep tells of a particle.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DensityRate {
+    /// dρ/dt, kg/m³/s.
+    pub rate: f64,
+    /// How much of the support the fluid fills, −Σ r_ij·∇W_ij V_j/D: 1 inside, ½ at a flat surface.
+    pub fluid: f64,
+    /// How much of it walls fill, counted in the same way.
+    pub wall: f64,
+}
+
+impl AddAssign for DensityRate {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        self.rate += other.rate;
+        self.fluid += other.fluid;
+        self.wall += other.wall;
+    }
+}
+
 /// dv/dt of a particle, m/s².
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Acceleration<const D: usize>(pub [f64; D]);
+
+impl<const D: usize> AddAssign for Acceleration<D> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        for (sum, part) in self.0.iter_mut().zip(other.0) {
+            *sum += part;
+        }
+    }
+}
 
 impl<const D: usize> Default for Acceleration<D> {
     fn default() -> Self {
@@ -48,24 +120,27 @@ impl<const D: usize> Default for Acceleration<D> {
 }
 
 impl Quantity for Deviation {
-    type Rate<const D: usize> = f64;
-    type Sum<const D: usize, L: Lanes> = L;
+    type Rate<const D: usize> = DensityRate;
+    /// Σ c w, and the shares of the support that fluid and walls fill.
+    type Sum<const D: usize, L: Lanes> = [L; 3];
 
     #[inline(always)]
-    fn zero<const D: usize, L: Lanes>() -> L {
-        L::zero()
+    fn zero<const D: usize, L: Lanes>() -> [L; 3] {
+        [L::zero(); 3]
     }
 
     #[inline(always)]
-    fn add<const D: usize, L: Lanes>(sum: &mut L, coefficient: L, pair: &Pair<D, L>) {
-        *sum = coefficient.mul_add(pair.weight, *sum);
+    fn add<const D: usize, L: Lanes>(sum: &mut [L; 3], coefficient: L, pair: &Pair<D, L>) {
+        sum[0] = coefficient.mul_add(pair.weight, sum[0]);
+        let metres = pair.unit * lanes(-1.0 / D as f64);
+        sum[1] = (pair.distance2 * metres).mul_add(pair.weight, sum[1]);
     }
 
     #[inline(always)]
-    fn rates<const D: usize, L: Lanes>(sum: &L, density: &[f64], rates: &mut [f64]) {
-        let sum = numbers(*sum);
-        for ((rate, sum), density) in rates.iter_mut().zip(sum).zip(density) {
-            *rate = sum * density;
+    fn rates<const D: usize, L: Lanes>(sum: &[L; 3], density: &[f64], rates: &mut [DensityRate]) {
+        let [flux, fluid, wall] = sum.map(numbers);
+        for (l, (rate, density)) in rates.iter_mut().zip(density).enumerate() {
+            *rate = DensityRate { rate: flux[l] * density, fluid: fluid[l], wall: wall[l] };
         }
     }
 }
@@ -88,6 +163,20 @@ impl Quantity for Pressure {
     }
 
     #[inline(always)]
+    fn add_shear<const D: usize, L: Lanes>(
+        sum: &mut [L; D],
+        coefficient: L,
+        velocity: &[L; D],
+        pair: &Pair<D, L>,
+    ) {
+        // F V = w per unit of length.
+        let factor = coefficient * (pair.weight * pair.per_unit);
+        for (sum, velocity) in sum.iter_mut().zip(velocity) {
+            *sum = factor.mul_add(*velocity, *sum);
+        }
+    }
+
+    #[inline(always)]
     fn rates<const D: usize, L: Lanes>(
         sum: &[L; D],
         density: &[f64],
@@ -96,6 +185,29 @@ impl Quantity for Pressure {
         let sum = sum.map(numbers);
         for (l, (rate, density)) in rates.iter_mut().zip(density).enumerate() {
             *rate = Acceleration(std::array::from_fn(|k| sum[k][l] / density));
+        }
+    }
+}
+
+impl Quantity for Crowding {
+    type Rate<const D: usize> = VectorSum<D>;
+    type Sum<const D: usize, L: Lanes> = [L; D];
+
+    #[inline(always)]
+    fn zero<const D: usize, L: Lanes>() -> [L; D] {
+        [L::zero(); D]
+    }
+
+    #[inline(always)]
+    fn add<const D: usize, L: Lanes>(sum: &mut [L; D], coefficient: L, pair: &Pair<D, L>) {
+        Pressure::add(sum, coefficient, pair);
+    }
+
+    #[inline(always)]
+    fn rates<const D: usize, L: Lanes>(sum: &[L; D], _: &[f64], rates: &mut [VectorSum<D>]) {
+        let sum = sum.map(numbers);
+        for (l, rate) in rates.iter_mut().enumerate() {
+            *rate = VectorSum(std::array::from_fn(|k| sum[k][l]));
         }
     }
 }

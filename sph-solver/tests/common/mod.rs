@@ -3,29 +3,24 @@
 
 use bytemuck::Pod;
 use sph_decomp::Communicator;
+use sph_geometry::{Aabb, Domain, FluidSide, Lattice, Shape, Solid};
 use sph_kernels::{Real, WendlandC2};
 use sph_solver::eos::EquationOfState;
 use sph_solver::error::RunError;
-use sph_solver::model::{Model, OnLost};
-use sph_solver::physics::Terms;
+use sph_solver::model::{Model, OnLost, SolidModel};
 use sph_solver::run::checkpoints::share;
 use sph_solver::run::digest::Digest;
+use sph_solver::scheme::Scheme;
 use sph_solver::simulation::{FullStep, Simulation};
-use sph_solver::state::{FLUID, State};
+use sph_solver::state::State;
 use sph_solver::team::Team;
 use sph_solver::terms::{
-    ArtificialViscosity, Continuity, DeltaContinuity, OneSidedRiemannWall, SymmetricPressure,
+    ArtificialViscosity, DeltaContinuity, SymmetricPressure, WallContinuity, WallPressure,
 };
 use sph_solver::timestep::StepLimits;
+use sph_solver::walls::WallElements;
 
 pub const GRAVITY: f64 = 9.81;
-
-pub type BoxTerms<const D: usize> = Terms<
-    DeltaContinuity<D>,
-    (SymmetricPressure, ArtificialViscosity),
-    Continuity,
-    OneSidedRiemannWall<D>,
->;
 
 /// Fluid cells and tank cells per axis; the last axis points up.
 #[derive(Clone, Copy)]
@@ -56,73 +51,80 @@ impl<const D: usize> Case<D> {
                 kinematic_viscosity: 0.0,
             },
             domain: ([-4.0 * dp; D], self.tank.map(|n| f64::from(n + 4) * dp)),
+            periods: [None; D],
+            lowest_pressure: f64::NEG_INFINITY,
+            closed: false,
             on_lost: OnLost::Stop,
+            solids: vec![SolidModel { name: "tank".into(), center: [0.0; D], slips: true }],
         }
     }
 
-    pub fn physics(&self) -> BoxTerms<D> {
+    pub fn scheme<S: Real>(&self) -> Scheme<D, S> {
         let model = self.model();
         let (h, c0) = (model.limits.smoothing_length, model.limits.sound_speed);
-        Terms {
-            fluid_density: DeltaContinuity {
-                strength: 0.1 * h * c0,
-                hydrostatic_gradient: model.gravity.map(|g| g * 1000.0 / (c0 * c0)),
-            },
-            fluid_force: (
-                SymmetricPressure,
-                ArtificialViscosity { strength: 0.02 * h * c0 * 1000.0, softening: 0.01 * h * h },
-            ),
-            wall_density: Continuity,
-            wall_force: OneSidedRiemannWall { gravity: model.gravity, sound_speed: c0 },
-        }
+        let density = DeltaContinuity {
+            strength: 0.1 * h * c0,
+            hydrostatic_gradient: model.gravity.map(|g| g * 1000.0 / (c0 * c0)),
+        };
+        let friction =
+            ArtificialViscosity { strength: 0.02 * h * c0 * 1000.0, softening: 0.01 * h * h };
+        let wall = WallPressure { sound_speed: c0 };
+        Scheme::new::<WendlandC2>(density, (SymmetricPressure, friction))
+            .walls(WallContinuity, wall)
+            .build()
     }
 
-    /// All particles: the column in the corner with hydrostatic pressure, and three layers of wall.
-    pub fn particles(&self) -> State<D> {
+    /// The column in the corner with hydrostatic pressure.
+    pub fn fluid(&self) -> State<D> {
         let model = self.model();
         let dp = self.spacing;
         let mut state = State::default();
         let height = f64::from(self.column[D - 1]) * dp;
-        let mut cell = [-3; D];
-        loop {
-            let x = cell.map(|i| (f64::from(i) + 0.5) * dp);
-            let within = |size: &[i32; D]| (0..D).all(|k| (0..size[k]).contains(&cell[k]));
-            if within(&self.column) || !within(&self.tank) {
-                let fluid = within(&self.column);
-                let pressure = if fluid { 1000.0 * GRAVITY * (height - x[D - 1]) } else { 0.0 };
-                state.id.push(state.id.len() as u64);
-                state.kind.push(if fluid { FLUID } else { 1 });
-                state.mass.push(1000.0 * dp.powi(D as i32));
-                state.density.push(model.equation_of_state.density(pressure));
-                state.position.push(x);
-                state.velocity.push([0.0; D]);
-            }
-            let mut k = 0;
-            loop {
-                if k == D {
-                    return state;
-                }
-                cell[k] += 1;
-                if cell[k] < self.tank[k] + 3 {
-                    break;
-                }
-                cell[k] = -3;
-                k += 1;
-            }
+        let cells: i32 = self.column.iter().product();
+        for number in 0..cells {
+            let mut rest = number;
+            let x: [f64; D] = std::array::from_fn(|k| {
+                let cell = rest % self.column[k];
+                rest /= self.column[k];
+                (f64::from(cell) + 0.5) * dp
+            });
+            let pressure = 1000.0 * GRAVITY * (height - x[D - 1]);
+            state.id.push(state.id.len() as u64);
+            state.mass.push(1000.0 * dp.powi(D as i32));
+            state.density.push(model.equation_of_state.density(pressure));
+            state.position.push(x);
+            state.velocity.push([0.0; D]);
         }
+        state
+    }
+
+    /// The walls of the tank.
+    pub fn walls(&self) -> WallElements<D> {
+        let size = self.tank.map(|n| f64::from(n) * self.spacing);
+        let shape = Shape::cuboid([0.0; D], size).expect("a box");
+        let tank = Solid::new("tank", shape, FluidSide::Inside);
+        let lattice = Lattice::new([0.0; D], self.spacing).expect("a lattice");
+        let domain = Domain::new(Aabb::new([0.0; D], size));
+        let support = 3.0 * self.spacing;
+        WallElements::of_solids(&[tank], &lattice, support, &domain, 1 << 32).expect("walls")
     }
 
     pub fn simulation<'a, S: Real + Pod>(
         &self,
         comm: &'a dyn Communicator,
         threads: usize,
-    ) -> Result<Simulation<'a, D, S, WendlandC2, BoxTerms<D>>, RunError> {
-        let mut state = self.particles();
-        let share = share(comm, state.len());
-        state.keep(&(share.start as u32..share.end as u32).collect::<Vec<_>>());
+    ) -> Result<Simulation<'a, D, S>, RunError> {
+        let (mut state, mut walls) = (self.fluid(), self.walls());
+        state.keep(&indices(share(comm, state.len())));
+        walls.keep(&indices(share(comm, walls.len())));
         let team = Team::new(threads)?;
-        Simulation::new(comm, team, self.model(), self.physics(), state, None)
+        Simulation::new(comm, team, self.model(), self.scheme(), state, walls, None)
     }
+}
+
+/// Indices of a range.
+pub fn indices(range: std::ops::Range<usize>) -> Vec<u32> {
+    (range.start as u32..range.end as u32).collect()
 }
 
 /// Digest of a rank's part; parts of all ranks are merged.

@@ -152,7 +152,7 @@ fn steps<S: Real + bytemuck::Pod>(case: &Case) -> Result<StepRow, Box<dyn Error>
     let updates = (after.particle_updates - before.particle_updates) as f64;
     let visits = (after.pairs - before.pairs) as f64;
     let rank = simulation.rank();
-    let particles = rank.state.len() + rank.solids.len();
+    let particles = rank.state.len() + rank.elements.len();
     Ok(StepRow {
         case: *case,
         fluid: rank.fluid.owned(),

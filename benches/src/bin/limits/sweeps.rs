@@ -5,7 +5,7 @@ use serde::Serialize;
 use sph_benches::{Clock, Spent, SweepCase, density_terms, force_terms, median};
 use sph_kernels::Real;
 use sph_solver::team::Team;
-use sph_solver::terms::Acceleration;
+use sph_solver::terms::{Acceleration, DensityRate};
 use std::error::Error;
 
 /// Floating-point operations of a δ-SPH pair: one visit in the density sweep and one in the force
@@ -67,7 +67,7 @@ fn case<S: Real>(
 ) -> Result<SweepRow, Box<dyn Error>> {
     let case = SweepCase::<S>::new(count, support, skin);
     let radius = case.scale.support_radius;
-    let mut density_rates = vec![0.0; case.len()];
+    let mut density_rates = vec![DensityRate::default(); case.len()];
     let mut accelerations = vec![Acceleration::default(); case.len()];
     let team = Team::new(2)?;
     let mut density = |team: Option<&Team>| {

@@ -1,6 +1,7 @@
 //! What types cannot say: ranges, dimensions, names, contradictions.
 
 mod outputs;
+mod periodic;
 mod shapes;
 mod values;
 
@@ -11,6 +12,7 @@ use super::formula::Formula;
 use super::located::At;
 use super::numerics::{Numerics, SoundSpeed};
 use super::root::Scene;
+use super::solid::{Solid, WallFriction};
 use values::Values;
 
 /// Checks everything that needs no file but the scene itself.
@@ -35,6 +37,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     if let Some(domain) = &scene.domain {
         values.corners("domain", &domain.min, &domain.max)?;
     }
+    periodic::check(&values)?;
     numerics(&values, &scene.numerics)?;
     let (name, first) = scene.fluid()?;
     fluid(&values, name, first)?;
@@ -43,6 +46,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
         values.name(&format!("solid.{index}.name"), &solid.name)?;
         values.unique("solid", &solid.name, &mut names)?;
         shapes::solid(&values, index, solid)?;
+        walls(&values, index, solid)?;
     }
     outputs::probes(&values)?;
     outputs::intervals(&values)
@@ -93,6 +97,24 @@ fn numerics(values: &Values<'_>, numerics: &Numerics) -> Result<(), SceneError> 
     )
 }
 
+fn walls(values: &Values<'_>, index: usize, solid: &At<Solid>) -> Result<(), SceneError> {
+    if let Some(point) = &solid.moments_about {
+        values.components(&format!("solid.{index}.moments_about"), point)?;
+    }
+    match &solid.wall_friction {
+        Some(friction) if **friction == WallFriction::NoSlip => match values.scene.viscosity() {
+            Some(_) => Ok(()),
+            None => Err(values.invalid(
+                friction.place,
+                "a wall without slip needs a fluid with a viscosity".into(),
+                "give `viscosity` in the table of the fluid, in Pa s (water has 0.001), or \
+                 wall_friction = \"slip\"",
+            )),
+        },
+        _ => Ok(()),
+    }
+}
+
 fn fluid(values: &Values<'_>, name: &str, fluid: &At<Fluid>) -> Result<(), SceneError> {
     let path = format!("fluid.{name}");
     values.positive(&format!("{path}.density"), &fluid.density, "in kg/m³, water has 1000")?;
@@ -107,6 +129,15 @@ fn fluid(values: &Values<'_>, name: &str, fluid: &At<Fluid>) -> Result<(), Scene
                 "remove one of them",
             ));
         }
+    }
+    if let Some(pressure) = &fluid.cavitation_pressure {
+        values.within(
+            &format!("{path}.cavitation_pressure"),
+            pressure,
+            f64::MIN..=0.0,
+            "at most 0",
+            "pressures are relative to that of the air: water cavitates at about -100000 Pa",
+        )?;
     }
     if fluid.regions.is_empty() {
         let kind = ErrorKind::Nothing {

@@ -1,0 +1,104 @@
+//! A scheme: what is summed over which neighbours in the passes of a step.
+
+use crate::groups::{BoxedSum, fluid_sum, wall_sum};
+use crate::kernel_shape::KernelShape;
+use crate::terms::{
+    Acceleration, Crowding, DensityRate, Deviation, PairTerm, Pressure, VectorSum, WallTerm,
+};
+use sph_kernels::{Kernel, Real};
+use std::marker::PhantomData;
+
+/// The sums of a scheme. What is absent costs nothing.
+#[derive(Debug)]
+pub struct Scheme<const D: usize, S> {
+    /// The kernel that the sums were compiled for.
+    pub kernel: KernelShape,
+    /// dρ/dt from fluid neighbours.
+    pub density: BoxedSum<D, S, DensityRate>,
+    /// dv/dt from fluid neighbours.
+    pub force: BoxedSum<D, S, Acceleration<D>>,
+    /// dρ/dt from walls.
+    pub wall_density: Option<BoxedSum<D, S, DensityRate>>,
+    /// dv/dt from the pressure of walls.
+    pub wall_force: Option<BoxedSum<D, S, Acceleration<D>>>,
+    /// dv/dt from the friction of walls that do not let fluid slip.
+    pub wall_friction: Option<BoxedSum<D, S, Acceleration<D>>>,
+    /// How crowded the fluid is around a particle, if particles are shifted.
+    pub shifting: Option<BoxedSum<D, S, VectorSum<D>>>,
+    /// The same for the walls around it.
+    pub wall_shifting: Option<BoxedSum<D, S, VectorSum<D>>>,
+}
+
+impl<const D: usize, S: Real> Scheme<D, S> {
+    /// A scheme for a kernel, from its terms for fluid neighbours.
+    pub fn new<K: Kernel>(
+        density: impl PairTerm<D, Deviation> + 'static,
+        force: impl PairTerm<D, Pressure> + 'static,
+    ) -> SchemeBuilder<D, S, K> {
+        SchemeBuilder {
+            scheme: Self {
+                kernel: KernelShape::of::<K>(D),
+                density: fluid_sum::<D, S, Deviation, K, _>(density),
+                force: fluid_sum::<D, S, Pressure, K, _>(force),
+                wall_density: None,
+                wall_force: None,
+                wall_friction: None,
+                shifting: None,
+                wall_shifting: None,
+            },
+            kernel: PhantomData,
+        }
+    }
+
+    /// Whether walls matter at all.
+    pub fn has_walls(&self) -> bool {
+        self.wall_density.is_some() || self.wall_force.is_some() || self.wall_friction.is_some()
+    }
+}
+
+/// A scheme to which walls are added.
+#[derive(Debug)]
+pub struct SchemeBuilder<const D: usize, S, K> {
+    scheme: Scheme<D, S>,
+    kernel: PhantomData<K>,
+}
+
+impl<const D: usize, S: Real, K: Kernel> SchemeBuilder<D, S, K> {
+    /// Walls with a term in each pass.
+    #[must_use]
+    pub fn walls(
+        mut self,
+        density: impl WallTerm<D, Deviation> + 'static,
+        force: impl WallTerm<D, Pressure> + 'static,
+    ) -> Self {
+        self.scheme.wall_density = Some(wall_sum::<D, S, Deviation, K, _>(density));
+        self.scheme.wall_force = Some(wall_sum::<D, S, Pressure, K, _>(force));
+        self
+    }
+
+    /// Friction of the walls that do not let fluid slip.
+    #[must_use]
+    pub fn friction(mut self, friction: impl WallTerm<D, Pressure> + 'static) -> Self {
+        self.scheme.wall_friction = Some(wall_sum::<D, S, Pressure, K, _>(friction));
+        self
+    }
+
+    /// Particles that are shifted to where there are too few of them.
+    #[must_use]
+    pub fn shifting(mut self, crowding: impl PairTerm<D, Crowding> + 'static) -> Self {
+        self.scheme.shifting = Some(fluid_sum::<D, S, Crowding, K, _>(crowding));
+        self
+    }
+
+    /// The part of walls in that.
+    #[must_use]
+    pub fn wall_shifting(mut self, crowding: impl WallTerm<D, Crowding> + 'static) -> Self {
+        self.scheme.wall_shifting = Some(wall_sum::<D, S, Crowding, K, _>(crowding));
+        self
+    }
+
+    /// The scheme.
+    pub fn build(self) -> Scheme<D, S> {
+        self.scheme
+    }
+}
