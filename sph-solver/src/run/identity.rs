@@ -2,7 +2,7 @@
 //! continues, and what it may change.
 
 use super::digest::Digest;
-use crate::scene::{Pressure, Probe, ProbeKind, Scene};
+use crate::scene::{Pressure, Probe, Scene};
 use crate::setup::Particles;
 
 /// Keys of a scene with their values, one a line.
@@ -20,7 +20,7 @@ pub struct Identity {
 }
 
 impl Values {
-    fn set(&mut self, key: impl Into<String>, value: impl ToString) {
+    fn set(&mut self, key: impl Into<String>, value: &impl ToString) {
         // A line each, whatever the scene holds.
         let value = value.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
         self.0.push((key.into(), value));
@@ -74,32 +74,32 @@ impl Identity {
 fn particles<const D: usize>(scene: &Scene, all: &Particles<D>) -> Values {
     let numerics = &scene.numerics;
     let mut values = Values::default();
-    values.set("dimension", D);
-    values.set("gravity", format!("{:?}", scene.gravity::<D>()));
+    values.set("dimension", &D);
+    values.set("gravity", &format!("{:?}", scene.gravity::<D>()));
     if let Some(domain) = &scene.domain {
-        values.set("domain", format!("{:?} to {:?}", *domain.min, *domain.max));
+        values.set("domain", &format!("{:?} to {:?}", *domain.min, *domain.max));
     }
-    values.set("periodic", format!("{:?}", scene.periodic_axes::<D>()));
-    values.set("numerics.spacing", *numerics.spacing);
-    values.set("numerics.support", *numerics.support);
-    values.set("numerics.scheme", word(&numerics.scheme));
-    values.set("numerics.kernel", word(&numerics.kernel));
-    values.set("numerics.precision", word(&numerics.precision));
-    values.set("numerics.sound_speed", word(&numerics.sound_speed.value));
-    values.set("numerics.equation_of_state", word(&numerics.equation_of_state));
+    values.set("periodic", &format!("{:?}", scene.periodic_axes::<D>()));
+    values.set("numerics.spacing", &*numerics.spacing);
+    values.set("numerics.support", &*numerics.support);
+    values.set("numerics.scheme", &word(&numerics.scheme));
+    values.set("numerics.kernel", &word(&numerics.kernel));
+    values.set("numerics.precision", &word(&numerics.precision));
+    values.set("numerics.sound_speed", &word(&numerics.sound_speed.value));
+    values.set("numerics.equation_of_state", &word(&numerics.equation_of_state));
     for (name, fluid) in &scene.fluid {
         let path = format!("fluid.{name}");
-        values.set(format!("{path}.density"), *fluid.density);
+        values.set(format!("{path}.density"), &*fluid.density);
         let mut fields = |path: &str, velocity: Option<String>, pressure: Option<&Pressure>| {
             if let Some(velocity) = velocity {
-                values.set(format!("{path}.velocity"), velocity);
+                values.set(format!("{path}.velocity"), &velocity);
             }
             match pressure {
                 Some(Pressure::Hydrostatic) => {
-                    values.set(format!("{path}.pressure"), "hydrostatic");
+                    values.set(format!("{path}.pressure"), &"hydrostatic");
                 }
                 Some(Pressure::Formula(formula)) => {
-                    values.set(format!("{path}.pressure"), formula.text());
+                    values.set(format!("{path}.pressure"), &formula.text());
                 }
                 None => (),
             }
@@ -115,63 +115,69 @@ fn particles<const D: usize>(scene: &Scene, all: &Particles<D>) -> Values {
             fields(&format!("{path}.regions.{index}"), velocity, pressure);
         }
     }
-    values.set("number of particles of the fluid", all.of_kind(0).len());
+    values.set("number of particles of the fluid", &all.of_kind(0).len());
     for (solid, kind) in scene.solid.iter().zip(1..) {
         values
-            .set(format!("number of particles of solid {}", *solid.name), all.of_kind(kind).len());
+            .set(format!("number of particles of solid {}", *solid.name), &all.of_kind(kind).len());
     }
     let mut digest = Digest::default();
     for (i, x) in all.position.iter().enumerate() {
         digest.add(i as u64, x.iter().copied().chain([f64::from(all.kind[i])]));
     }
-    values.set("places of the particles", digest);
+    values.set("places of the particles", &digest);
     values
 }
 
 fn settings(scene: &Scene, end_time: f64, checkpoints: Option<f64>) -> Values {
     let numerics = &scene.numerics;
     let mut values = Values::default();
-    values.set("end_time", end_time);
-    values.set("numerics.cfl", *numerics.cfl);
-    values.set("numerics.artificial_viscosity", scene.artificial_viscosity());
-    values.set("numerics.density_diffusion", *numerics.density_diffusion);
-    values.set("numerics.skin", *numerics.skin);
-    values.set("numerics.on_lost", word(&numerics.on_lost));
+    values.set("end_time", &end_time);
+    values.set("numerics.cfl", &*numerics.cfl);
+    values.set("numerics.artificial_viscosity", &scene.artificial_viscosity());
+    values.set("numerics.density_diffusion", &*numerics.density_diffusion);
+    values.set("numerics.skin", &*numerics.skin);
+    values.set("numerics.on_lost", &word(&numerics.on_lost));
     for (name, fluid) in &scene.fluid {
         values.set(
             format!("fluid.{name}.viscosity"),
-            fluid.viscosity.as_deref().copied().unwrap_or(0.0),
+            &fluid.viscosity.as_deref().copied().unwrap_or(0.0),
         );
         let lowest = fluid.cavitation_pressure.as_deref().copied().unwrap_or(f64::NEG_INFINITY);
-        values.set(format!("fluid.{name}.cavitation_pressure"), lowest);
+        values.set(format!("fluid.{name}.cavitation_pressure"), &lowest);
     }
     for solid in &scene.solid {
         let friction = solid.wall_friction.as_ref().map(|friction| word(&friction.value));
         let path = format!("solid {}.wall_friction", *solid.name);
-        values.set(path, friction.unwrap_or_else(|| "as the fluid".into()));
+        values.set(path, &friction.unwrap_or_else(|| "as the fluid".into()));
     }
     let output = &scene.output;
     let mut interval = |key: &str, seconds: Option<f64>| {
         if let Some(seconds) = seconds {
-            values.set(key, seconds);
+            values.set(key, &seconds);
         }
     };
     interval("output.snapshots", output.snapshots.as_deref().copied());
     interval("output.energies", output.energies.as_deref().copied());
     interval("output.checkpoint_every", checkpoints);
     for probe in &scene.probe {
-        values.set(format!("probe {}", *probe.name), describe(probe));
+        values.set(format!("probe {}", *probe.name), &describe(probe));
     }
     values
 }
 
 fn describe(probe: &Probe) -> String {
-    match probe.kind {
-        ProbeKind::Front => format!("a front along {:?}", probe.axis.as_deref()),
-        ProbeKind::Point => {
-            format!("{:?} at {:?}", probe.fields.as_deref(), probe.at.as_deref())
+    let mut text = format!("a {}", probe.kind.name());
+    let mut add = |name: &str, value: Option<String>| {
+        if let Some(value) = value {
+            text += &format!(", {name} {value}");
         }
-    }
+    };
+    add("at", probe.at.as_deref().map(|at| format!("{at:?}")));
+    add("fields", probe.fields.as_deref().map(|fields| format!("{fields:?}")));
+    add("axis", probe.axis.as_deref().map(|axis| format!("{axis:?}")));
+    add("radius", probe.radius.as_deref().map(|radius| format!("{radius}")));
+    add("normal", probe.normal.as_deref().map(|normal| format!("{normal:?}")));
+    text
 }
 
 /// A choice as the scene writes it.
@@ -200,7 +206,7 @@ mod tests {
     #[test]
     fn values_survive_a_checkpoint() {
         let Identity { particles, settings } =
-            identity(&["fluid.water.velocity=[\"x - y\", \"0\"]"]);
+            identity(&["fluid.water.velocity=[\"x  *  y\", \"0\"]"]);
         for values in [particles, settings] {
             assert_eq!(Values::from_text(&values.to_text()), values);
         }

@@ -3,6 +3,7 @@
 use super::digest::Digest;
 use super::driver::Status;
 use super::folder::{Existing, RunFolder};
+use super::gauges::patch;
 use super::identity::Identity;
 use super::notes::Notes;
 use super::plan::RunPlan;
@@ -14,7 +15,7 @@ use super::table::{Features, Job, Precision, Viscosity, run_job};
 use super::world::World;
 use crate::error::RunError;
 use crate::model::{Model, OnLost, SolidModel};
-use crate::scene::{self, Field, ProbeKind, Scene};
+use crate::scene::{self, At, Field, ProbeKind, Scene};
 use crate::setup::{Constants, Particles, Setup};
 use crate::team::Team;
 use sph_decomp::{Blocking, Communicator, RanksError, Solo, ThreadRanks, check_same_build};
@@ -72,6 +73,7 @@ fn run_in<const D: usize>(
     watch: &(dyn Fn(Status) + Sync),
 ) -> Result<Summary, RunError> {
     let launch = world.agree(Launch::<D>::new(scene, options, stop))?;
+    launch.check_ranks(world)?;
     // Locked until the run is over.
     let folder = world.once(|| RunFolder::claim(&options.out, options.existing))?;
     if let Some(note) = folder.as_ref().and_then(RunFolder::note) {
@@ -84,7 +86,7 @@ fn run_in<const D: usize>(
 struct Launch<const D: usize> {
     /// About the scene.
     notes: Vec<String>,
-    particles: Shares<D>,
+    shares: Shares<D>,
     model: Model<D>,
     features: Features,
     /// Everything that determines the bits of the result: all ranks must have the same.
@@ -115,7 +117,11 @@ impl<const D: usize> Launch<D> {
             snapshots: output.snapshots.as_deref().copied(),
             samples: output.energies.as_deref().copied(),
             checkpoints,
-            probes: scene.probe.iter().map(|one| (one.name.to_string(), probe(one))).collect(),
+            probes: scene
+                .probe
+                .iter()
+                .map(|one| (one.name.to_string(), probe(one, constants.spacing)))
+                .collect(),
             resume: options.existing == Existing::Resume,
             keeps_state: checkpoints.is_some() || options.max_wall.is_some(),
             stop,
@@ -123,8 +129,21 @@ impl<const D: usize> Launch<D> {
         };
         let (ranks, threads) = (options.ranks, options.threads);
         let blocking = options.blocking;
-        let particles = Shares::new(particles, ranks.unwrap_or(1));
-        Ok(Self { notes, fingerprint, particles, model, features, plan, ranks, threads, blocking })
+        let shares = Shares::new(particles, ranks.unwrap_or(1));
+        Ok(Self { notes, fingerprint, shares, model, features, plan, ranks, threads, blocking })
+    }
+
+    /// Refuses ranks that cannot be, before anything is written.
+    fn check_ranks(&self, world: &World) -> Result<(), RunError> {
+        #[cfg(feature = "mpi")]
+        if matches!((world, self.ranks), (World::Mpi(_), Some(_))) {
+            return Err(RunError::RanksUnderMpi);
+        }
+        let (ranks, particles) = (self.ranks.unwrap_or(world.size()), self.shares.particles());
+        if ranks > particles {
+            return Err(RunError::TooManyRanks { ranks, particles });
+        }
+        Ok(())
     }
 
     fn run(self, world: &World, watch: &(dyn Fn(Status) + Sync)) -> Result<Summary, RunError> {
@@ -144,9 +163,7 @@ impl<const D: usize> Launch<D> {
                 summaries.into_iter().next().ok_or(RunError::Ranks("no rank ran".into()))
             }
             #[cfg(feature = "mpi")]
-            (World::Mpi(_), Some(_)) => Err(RunError::RanksUnderMpi),
-            #[cfg(feature = "mpi")]
-            (World::Mpi(mpi), None) => {
+            (World::Mpi(mpi), _) => {
                 let result = self.rank(mpi, "mpi", self.threads.unwrap_or(1), watch);
                 match result {
                     // Only this rank knows, and the others wait for it.
@@ -167,10 +184,6 @@ impl<const D: usize> Launch<D> {
     ) -> Result<Summary, RunError> {
         let without_overlap = Blocking::new(comm);
         let comm: &dyn Communicator = if self.blocking { &without_overlap } else { comm };
-        if comm.size() > self.particles.len() {
-            let (ranks, particles) = (comm.size(), self.particles.len());
-            return Err(RunError::TooManyRanks { ranks, particles });
-        }
         let tag = format!(
             "sph {} {} {}",
             env!("CARGO_PKG_VERSION"),
@@ -179,7 +192,7 @@ impl<const D: usize> Launch<D> {
         );
         check_same_build(&comm, tag.as_bytes())?;
         let silent = |_: Status| ();
-        let (state, elements) = self.particles.take(comm);
+        let (state, elements) = self.shares.take(comm);
         let mut summary = run_job(
             Job {
                 comm,
@@ -263,20 +276,24 @@ fn fingerprint<const D: usize>(
     format!("{D}-D {model:?} {features:?} particles {digest}")
 }
 
-fn probe<const D: usize>(probe: &scene::Probe) -> Probe<D> {
+fn probe<const D: usize>(probe: &scene::Probe, spacing: f64) -> Probe<D> {
+    // The scene has checked that what a kind needs is there and fits the dimension.
+    let array = |numbers: Option<&At<Vec<f64>>>| numbers.map(|numbers| scene::vector(numbers));
+    let at: [f64; D] = array(probe.at.as_ref()).unwrap_or([0.0; D]);
+    let normal: Option<[f64; D]> = array(probe.normal.as_ref());
+    let fields = probe.fields.as_deref().map_or(&[][..], Vec::as_slice);
+    let quantities = fields.iter().flat_map(|field| quantities::<D>(*field)).collect();
     match probe.kind {
         ProbeKind::Front => {
-            // The scene has checked that the axis is there and fits the dimension.
             Probe::Front { axis: probe.axis.as_ref().map_or(0, |axis| axis.index()) }
         }
-        ProbeKind::Point => {
-            let at = probe.at.as_deref().map_or(&[][..], Vec::as_slice);
-            let fields = probe.fields.as_deref().map_or(&[][..], Vec::as_slice);
-            Probe::Point {
-                at: std::array::from_fn(|k| at.get(k).copied().unwrap_or(0.0)),
-                quantities: fields.iter().flat_map(|field| quantities::<D>(*field)).collect(),
-            }
+        ProbeKind::Point => Probe::Point { at, quantities },
+        ProbeKind::Patch => {
+            let radius = probe.radius.as_deref().copied().unwrap_or(0.0);
+            Probe::Patch { points: patch(&at, radius, normal.as_ref(), spacing), quantities }
         }
+        ProbeKind::Level => Probe::Level { at },
+        ProbeKind::Flow => Probe::Flow { at, normal: normal.unwrap_or([0.0; D]) },
     }
 }
 

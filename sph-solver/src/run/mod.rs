@@ -7,6 +7,7 @@ pub mod driver;
 pub mod files;
 pub mod folder;
 pub mod gather;
+pub mod gauges;
 pub mod identity;
 pub mod launch;
 pub mod load_log;

@@ -11,8 +11,11 @@ pub struct Notes(Arc<Inner>);
 #[derive(Default)]
 struct Inner {
     made: Mutex<Vec<String>>,
-    tell: Option<Box<dyn Fn(&str) + Send + Sync>>,
+    tell: Option<Box<Ear>>,
 }
+
+/// Who hears a note.
+type Ear = dyn Fn(&str) + Send + Sync;
 
 impl Notes {
     /// Notes that `tell` hears at once, each once.

@@ -1,10 +1,10 @@
 //! Numbers sampled from a full step: energies, momentum, probes. The same bits on any ranks.
 
+use super::gauges::Field;
 use crate::error::RunError;
 use crate::kernel_shape::KernelShape;
 use crate::model::Model;
 use crate::simulation::FullStep;
-use crate::space;
 use sph_decomp::{Communicator, ExactSum, global_sums};
 
 /// What a probe reads at its place.
@@ -27,6 +27,25 @@ pub enum Probe<const D: usize> {
         at: [f64; D],
         /// What.
         quantities: Vec<Quantity>,
+    },
+    /// Means of fields over a patch, such as the face of a pressure sensor.
+    Patch {
+        /// Points that cover it, m.
+        points: Vec<[f64; D]>,
+        /// What.
+        quantities: Vec<Quantity>,
+    },
+    /// The level of the water on the vertical line through a point.
+    Level {
+        /// The point, m.
+        at: [f64; D],
+    },
+    /// The flow of volume through a plane.
+    Flow {
+        /// A point of the plane, m.
+        at: [f64; D],
+        /// The direction that counts as positive, of any length.
+        normal: [f64; D],
     },
     /// The farthest fluid particle along an axis: the front of a dam break.
     Front {
@@ -92,7 +111,7 @@ pub fn budget<const D: usize>(
 }
 
 /// Reads a probe; one number per column of [`Probe::columns`], NaN where there is nothing to read: at a
-/// point without fluid within one support radius, and for a front without fluid. Collective.
+/// point without fluid within one support radius, for a front or level without fluid. Collective.
 pub fn read<const D: usize>(
     comm: &dyn Communicator,
     model: &Model<D>,
@@ -100,7 +119,11 @@ pub fn read<const D: usize>(
     full: &FullStep<D>,
     probe: &Probe<D>,
 ) -> Result<Vec<f64>, RunError> {
+    let field = Field { comm, model, full, weight: kernel.w };
     match probe {
+        Probe::Patch { points, quantities } => field.means(points, quantities),
+        Probe::Level { at } => Ok(vec![field.level(at)?]),
+        Probe::Flow { at, normal } => Ok(vec![field.flow(at, normal)?]),
         Probe::Front { axis } => {
             let farthest = full.position.iter().map(|x| x[*axis]);
             let mut front = [farthest.fold(f64::NEG_INFINITY, f64::max)];
@@ -108,21 +131,7 @@ pub fn read<const D: usize>(
             Ok(vec![if front[0].is_finite() { front[0] } else { f64::NAN }])
         }
         Probe::Point { at, quantities } => {
-            let radius = model.support_radius;
-            let mut sums = vec![ExactSum::new(); 1 + quantities.len()];
-            for (i, x) in full.position.iter().enumerate() {
-                let offset = space::offset(x, at, &model.periods);
-                let distance = offset.iter().map(|d| d * d).sum::<f64>().sqrt();
-                if distance >= radius {
-                    continue;
-                }
-                let weight = (kernel.w)(distance / radius) * full.mass[i] / full.density[i];
-                sums[0].add(weight);
-                for (sum, quantity) in sums[1..].iter_mut().zip(quantities) {
-                    sum.add(weight * value(model, full, i, *quantity));
-                }
-            }
-            let sums = global_sums(&comm, &sums)?;
+            let sums = field.sums(&[*at], quantities)?;
             let wet = sums[0] > 0.0;
             let read = |sum: &f64| if wet { sum / sums[0] } else { f64::NAN };
             let readings = sums[1..].iter().map(read);
@@ -131,7 +140,8 @@ pub fn read<const D: usize>(
     }
 }
 
-fn value<const D: usize>(
+/// A quantity of particle `i`.
+pub fn value<const D: usize>(
     model: &Model<D>,
     full: &FullStep<D>,
     i: usize,
@@ -149,7 +159,9 @@ impl<const D: usize> Probe<D> {
     pub fn columns(&self) -> Vec<(&'static str, &'static str)> {
         match self {
             Self::Front { axis } => vec![(["x", "y", "z"][*axis], "m")],
-            Self::Point { quantities, .. } => {
+            Self::Level { .. } => vec![("level", "m")],
+            Self::Flow { .. } => vec![("flow", if D == 2 { "m2/s" } else { "m3/s" })],
+            Self::Point { quantities, .. } | Self::Patch { quantities, .. } => {
                 quantities.iter().map(Quantity::column).chain([("wet", "1")]).collect()
             }
         }

@@ -23,7 +23,7 @@ impl<const D: usize> Shares<D> {
     }
 
     /// Number of particles of all shares.
-    pub fn len(&self) -> usize {
+    pub fn particles(&self) -> usize {
         self.len
     }
 

@@ -57,7 +57,7 @@ impl<const D: usize> Setup<D> {
     }
 }
 
-/// Notes on point probes that cannot read, or not at once. A probe reads the fluid within `support`
+/// Notes on point and patch probes that cannot read, or not at once. A probe reads the fluid within `support`
 /// (m) of it.
 pub fn on_probes<const D: usize>(
     scene: &Scene,
@@ -68,7 +68,8 @@ pub fn on_probes<const D: usize>(
 ) -> Vec<String> {
     let mut notes = Vec::new();
     let mut dry = Vec::new();
-    for probe in scene.probe.iter().filter(|probe| probe.kind == ProbeKind::Point) {
+    let reads_fields = |kind| matches!(kind, ProbeKind::Point | ProbeKind::Patch);
+    for probe in scene.probe.iter().filter(|probe| reads_fields(probe.kind)) {
         let name = probe.name.as_str();
         let at: [f64; D] = vector(probe.at.as_deref().map_or(&[], Vec::as_slice));
         if !domain.contains(&at) {
