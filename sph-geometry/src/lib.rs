@@ -31,7 +31,7 @@ pub use lattice::{
 pub use mesh::{
     Defects, MassProperties, MeshError, MeshReport, TriangleMesh, check, mass_properties,
 };
-pub use shape::{Nearest, Shape, ShapeError};
+pub use shape::{Nearest, Shape, ShapeError, SignedDistance};
 pub use solid::{FluidSide, Solid, depth_in_solids};
 
 /// Runs the programs of the README.
