@@ -82,7 +82,7 @@ impl DamBreak {
         };
         let friction =
             ArtificialViscosity { strength: 0.1 * h * c0 * DENSITY, softening: 0.01 * h * h };
-        Scheme::new::<WendlandC2>(density, (SymmetricPressure, friction))
+        Scheme::of::<WendlandC2>(density, (SymmetricPressure, friction))
             .walls(WallContinuity, WallPressure { sound_speed: c0 })
             .build()
     }

@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         strength: 0.02 * h * sound_speed * density0,
         softening: 0.01 * h * h,
     };
-    let scheme = Scheme::<2, f32>::new::<WendlandC2>(density, (SymmetricPressure, friction))
+    let scheme = Scheme::<2, f32>::of::<WendlandC2>(density, (SymmetricPressure, friction))
         .walls(WallContinuity, WallPressure { sound_speed })
         .build();
     let mut simulation = Simulation::new(&Solo, Team::new(1)?, model, scheme, state, walls, None)?;

@@ -31,7 +31,7 @@ pub struct Scheme<const D: usize, S> {
 
 impl<const D: usize, S: Real> Scheme<D, S> {
     /// A scheme for a kernel, from its terms for fluid neighbours.
-    pub fn new<K: Kernel>(
+    pub fn of<K: Kernel>(
         density: impl PairTerm<D, Deviation> + 'static,
         force: impl PairTerm<D, Pressure> + 'static,
     ) -> SchemeBuilder<D, S, K> {

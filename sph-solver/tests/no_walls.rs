@@ -33,7 +33,7 @@ fn fly(ranks: usize) -> (Digest, f64) {
             strength: 0.02 * h * model.limits.sound_speed * 1000.0,
             softening: 0.01 * h * h,
         };
-        let scheme = Scheme::<2, f64>::new::<WendlandC2>(Continuity, (SymmetricPressure, friction));
+        let scheme = Scheme::<2, f64>::of::<WendlandC2>(Continuity, (SymmetricPressure, friction));
         let mut simulation = Simulation::new(
             &comm as &dyn Communicator,
             Team::new(1)?,

@@ -93,7 +93,7 @@ fn error<S: Real + bytemuck::Pod>(seed: u64) -> f64 {
     let density =
         DeltaContinuity { strength: 0.1 * h * sound_speed, hydrostatic_gradient: [0.0; 2] };
     let wall = WallPressure { sound_speed };
-    let scheme = Scheme::<2, S>::new::<WendlandC2>(density, (SymmetricPressure, friction))
+    let scheme = Scheme::<2, S>::of::<WendlandC2>(density, (SymmetricPressure, friction))
         .walls(WallContinuity, wall)
         .build();
     let state = particles(equation_of_state, seed);

@@ -41,9 +41,9 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
     }
 
     fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Loads {
-        self.around.from_fluid(&*self.scheme.density, old, block);
+        self.around.sum_fluid(&*self.scheme.density, old, block);
         if let Some(sum) = &self.scheme.wall_density {
-            self.around.from_walls(&**sum, old, block, |_, _, _| ());
+            self.around.add_walls(&**sum, old, block, |_, _, _| ());
         }
         if let Some(sum) = &self.scheme.shifting {
             self.around.crowding(&**sum, self.scheme.wall_shifting.as_deref(), old, block);

@@ -55,7 +55,7 @@ fn felt_gradient<const D: usize>(
 
 impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
     /// Adds a part of the accelerations by walls, and of the loads on them.
-    fn from_walls(
+    fn add_walls(
         &self,
         part: Part,
         old: &[Record<S>],
@@ -67,7 +67,7 @@ impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
             Part::Friction => &self.scheme.wall_friction,
         };
         let Some(sum) = sum else { return };
-        self.around.from_walls(&**sum, old, block, |wall, block, own| {
+        self.around.add_walls(&**sum, old, block, |wall, block, own| {
             let (Some(scale), Some(solid)) = (&self.loads, self.model.solid(wall.solid)) else {
                 return;
             };
@@ -95,9 +95,9 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for ForcePass<'_, D, S> {
 
     fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Acceleration<D>>) -> Loads {
         let mut loads = Loads::NONE;
-        self.around.from_fluid(&*self.scheme.force, old, block);
-        self.from_walls(Part::Pressure, old, block, &mut loads);
-        self.from_walls(Part::Friction, old, block, &mut loads);
+        self.around.sum_fluid(&*self.scheme.force, old, block);
+        self.add_walls(Part::Pressure, old, block, &mut loads);
+        self.add_walls(Part::Friction, old, block, &mut loads);
         loads
     }
 

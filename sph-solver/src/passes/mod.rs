@@ -42,7 +42,7 @@ pub struct Surroundings<'a, const D: usize, S> {
 
 impl<const D: usize, S> Surroundings<'_, D, S> {
     /// Sets the rates of a block to the sum over its fluid neighbours, whose records are in `old`.
-    fn from_fluid<R: Rate>(
+    fn sum_fluid<R: Rate>(
         &self,
         sum: &dyn GroupSum<D, S, R>,
         old: &[Record<S>],
@@ -92,7 +92,7 @@ impl<const D: usize, S> Surroundings<'_, D, S> {
 
     /// Adds the sums over the elements of each wall to the rates of a block. `part` is shown what each
     /// wall contributed.
-    fn from_walls<R: Rate>(
+    fn add_walls<R: Rate>(
         &self,
         sum: &dyn GroupSum<D, S, R>,
         old: &[Record<S>],

@@ -72,8 +72,7 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
     team: Team,
     model: Model<D>,
     scheme: Scheme<D, S>,
-    state: State<D>,
-    elements: WallElements<D>,
+    (state, elements): (State<D>, WallElements<D>),
     plan: &RunPlan<D>,
     watch: &(dyn Fn(Status) + Sync),
 ) -> Result<(Simulation<'a, D, S>, Finished<D>), RunError> {

@@ -240,9 +240,9 @@ mod tests {
         let run = |ranks: usize, restart: bool| {
             let results = ThreadRanks::run(ranks, |comm| {
                 let mut log = LoadLog::new(1, SCALE);
-                for k in 0..40 {
+                for k in 0..40_i32 {
                     // Every rank causes a part of the load; together it is the same.
-                    let share = k as f64 + 1.0;
+                    let share = f64::from(k) + 1.0;
                     let own = if comm.rank() == 0 { step(share) } else { Loads::NONE };
                     log.record(&comm, &own, 0.1, 0.1)?;
                     if restart && k == 25 {

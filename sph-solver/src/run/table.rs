@@ -90,7 +90,7 @@ fn run_in<const D: usize, S: Real + Pod>(
 ) -> Result<Summary, RunError> {
     let scheme = delta_scheme::<D, S>(&job.model, features);
     let Job { comm, team, model, plan, state, elements, watch, meta } = job;
-    let (simulation, finished) = drive(comm, team, model, scheme, state, elements, plan, watch)?;
+    let (simulation, finished) = drive(comm, team, model, scheme, (state, elements), plan, watch)?;
     summarize(comm, &simulation, &finished, meta)
 }
 
@@ -107,23 +107,23 @@ fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) 
     };
     let pressure = SymmetricPressure;
     let builder = match (features.viscosity, features.density_diffusion > 0.0) {
-        (Viscosity::None, true) => Scheme::new::<K>(diffusion, pressure),
-        (Viscosity::None, false) => Scheme::new::<K>(Continuity, pressure),
+        (Viscosity::None, true) => Scheme::of::<K>(diffusion, pressure),
+        (Viscosity::None, false) => Scheme::of::<K>(Continuity, pressure),
         (Viscosity::Artificial(alpha), diffusive) => {
             let strength = alpha * h * sound_speed * density0;
             let force = (pressure, ArtificialViscosity { strength, softening });
             if diffusive {
-                Scheme::new::<K>(diffusion, force)
+                Scheme::of::<K>(diffusion, force)
             } else {
-                Scheme::new::<K>(Continuity, force)
+                Scheme::of::<K>(Continuity, force)
             }
         }
         (Viscosity::Laminar(dynamic_viscosity), diffusive) => {
             let force = (pressure, LaminarViscosity { dynamic_viscosity });
             if diffusive {
-                Scheme::new::<K>(diffusion, force)
+                Scheme::of::<K>(diffusion, force)
             } else {
-                Scheme::new::<K>(Continuity, force)
+                Scheme::of::<K>(Continuity, force)
             }
         }
     };

@@ -40,9 +40,9 @@ impl<const D: usize> WallTerm<D, Pressure> for NoSlip {
         let factor =
             lanes::<L>(2.0 * self.dynamic_viscosity) * pair.weight * pair.per_unit * stretch;
         let along = dot(&i.velocity, &pair.normal);
-        for k in 0..D {
+        for (k, sum) in sum.iter_mut().enumerate() {
             let tangential = i.velocity[k] - along * pair.normal[k];
-            sum[k] = factor.mul_add(tangential, sum[k]);
+            *sum = factor.mul_add(tangential, *sum);
         }
     }
 

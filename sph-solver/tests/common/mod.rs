@@ -69,7 +69,7 @@ impl<const D: usize> Case<D> {
         let friction =
             ArtificialViscosity { strength: 0.02 * h * c0 * 1000.0, softening: 0.01 * h * h };
         let wall = WallPressure { sound_speed: c0 };
-        Scheme::new::<WendlandC2>(density, (SymmetricPressure, friction))
+        Scheme::of::<WendlandC2>(density, (SymmetricPressure, friction))
             .walls(WallContinuity, wall)
             .build()
     }

@@ -84,9 +84,18 @@ pub fn read(bytes: &[u8]) -> Result<(Header, &[u8]), String> {
         let result = match words.as_slice() {
             [] | ["ply" | "comment" | "obj_info", ..] => Ok(()),
             ["format", format, ..] => match *format {
-                "ascii" => Ok(encoding = Some(Encoding::Ascii)),
-                "binary_little_endian" => Ok(encoding = Some(Encoding::Little)),
-                "binary_big_endian" => Ok(encoding = Some(Encoding::Big)),
+                "ascii" => {
+                    encoding = Some(Encoding::Ascii);
+                    Ok(())
+                }
+                "binary_little_endian" => {
+                    encoding = Some(Encoding::Little);
+                    Ok(())
+                }
+                "binary_big_endian" => {
+                    encoding = Some(Encoding::Big);
+                    Ok(())
+                }
                 other => Err(format!("the format `{}` is unknown", shown(other))),
             },
             ["element", name, count] => match count.parse() {
