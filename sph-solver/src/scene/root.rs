@@ -35,7 +35,7 @@ pub struct Scene {
     /// The box that particles may be in.
     pub domain: Option<At<Domain>>,
     /// Axes along which the domain repeats: what leaves it on one side comes in on the other. Needs a
-    /// [domain] that is a whole number of spacings long along them.
+    /// `[domain]` that is a whole number of spacings long along them.
     #[serde(default)]
     pub periodic: At<Vec<At<Axis>>>,
     /// Resolution, scheme and its constants.
