@@ -75,6 +75,10 @@ pub struct WallParticles<const D: usize> {
     pub positions: Vec<[f64; D]>,
     /// Index of the solid of each particle.
     pub solids: Vec<u32>,
+    /// Unit vectors out of that solid into the fluid, at the nearest point of its surface.
+    pub normals: Vec<[f64; D]>,
+    /// Depths below the surface of that solid in m, zero on it; exact where its signed distance is.
+    pub depths: Vec<f64>,
 }
 
 /// The lattice points where fluid can be: inside the domain and outside of all material. Points on
@@ -132,8 +136,11 @@ pub fn wall_particles<const D: usize>(
     for index in layer.indices().filter(|index| free.is_near(index, &reach)) {
         let position = lattice.point(&index);
         if let Some(solid) = solid_at(solids, &position, lattice) {
+            let (depth, normal) = solids[solid].depth_and_normal(&position);
             particles.positions.push(position);
             particles.solids.push(solid as u32);
+            particles.normals.push(normal);
+            particles.depths.push(depth.max(0.0));
         }
     }
     Ok(particles)
@@ -197,6 +204,8 @@ mod tests {
                     let owner = solids.iter().position(|s| s.depth_in_solid(x) >= -on).unwrap();
                     expected.positions.push(*x);
                     expected.solids.push(owner as u32);
+                    expected.normals.push(solids[owner].normal(x));
+                    expected.depths.push(solids[owner].depth_in_solid(x).max(0.0));
                 }
             }
             prop_assert_eq!(found, expected);
@@ -219,6 +228,11 @@ mod tests {
         let on_floor =
             |p: &&[f64; 3]| p[2] < 0.0 && p[0] > 0.0 && p[0] < 0.1 && p[1] > 0.2 && p[1] < 0.3;
         assert_eq!(found.positions.iter().filter(on_floor).count(), 3);
+        let floor: Vec<usize> = (0..expected).filter(|&i| on_floor(&&found.positions[i])).collect();
+        for (i, depth) in floor.into_iter().zip([0.25, 0.15, 0.05]) {
+            assert_eq!(found.normals[i], [0.0, 0.0, 1.0]);
+            assert!((found.depths[i] - depth).abs() < 1e-12, "{}", found.depths[i]);
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Solids for particle methods: mesh import and checks, signed distances, particles of fluid
 //! regions and walls.
 //!
-//! * [`TriangleMesh`]: surfaces from STL files; [`check`] tells whether one is closed and
+//! * [`TriangleMesh`]: surfaces from STL, OBJ and PLY files; [`check`] tells whether one is closed and
 //!   consistently oriented, [`mass_properties`] what a body of that shape weighs.
 //! * [`Shape`]: a set of points with a signed distance: primitives, meshes, polygons, unions and
 //!   differences, in two and three dimensions.
@@ -30,9 +30,10 @@ pub use lattice::{
     Lattice, LatticeError, LatticeRuns, NearSurface, fill_lattice, lattice_inside, near_surface,
 };
 pub use mesh::{
-    Defects, MassProperties, MeshError, MeshReport, TriangleMesh, check, mass_properties,
+    Defects, MassProperties, MeshError, MeshFile, MeshFormat, MeshReport, TriangleMesh, check,
+    mass_properties,
 };
-pub use shape::{Nearest, Shape, ShapeError};
+pub use shape::{Nearest, Shape, ShapeError, SignedDistance};
 pub use solid::{FluidSide, Solid, depth_in_solids};
 pub use wall_elements::{WallElements, wall_elements};
 

@@ -1,6 +1,6 @@
 //! Solids: shapes with material on one side of their surface.
 
-use crate::shape::Shape;
+use crate::shape::{Nearest, Shape};
 
 /// On which side of a surface fluid can be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -47,6 +47,15 @@ impl<const D: usize> Solid<D> {
         }
     }
 
+    /// [`depth_in_solid`](Self::depth_in_solid) and [`normal`](Self::normal) from one search.
+    pub fn depth_and_normal(&self, x: &[f64; D]) -> (f64, [f64; D]) {
+        let Nearest { distance, normal } = self.shape.nearest(x);
+        match self.fluid_side {
+            FluidSide::Inside => (distance, normal.map(|n| -n)),
+            FluidSide::Outside => (-distance, normal),
+        }
+    }
+
     /// The nearest point of the wall.
     pub fn closest_point(&self, x: &[f64; D]) -> [f64; D] {
         self.shape.closest_point(x)
@@ -73,6 +82,7 @@ mod tests {
         ];
         assert_eq!(solids[0].depth_in_solid(&[1.0, -0.25]), 0.25);
         assert_eq!(solids[0].normal(&[1.0, -0.25]), [0.0, 1.0]);
+        assert_eq!(solids[0].depth_and_normal(&[1.0, -0.25]), (0.25, [0.0, 1.0]));
         assert_eq!(solids[0].closest_point(&[1.0, -0.25]), [1.0, 0.0]);
         assert_eq!(solids[1].depth_in_solid(&[2.0, 1.25]), 0.25);
         assert_eq!(solids[1].normal(&[2.0, 1.25]), [0.0, 1.0]);

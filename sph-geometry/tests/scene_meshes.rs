@@ -15,7 +15,7 @@ fn shipped_meshes_are_those_of_the_generator() {
             mesh.to_stl().unwrap(),
             "run `cargo run -p sph-geometry --example make_scene_meshes`"
         );
-        let read = TriangleMesh::read_stl(&path).unwrap();
+        let read = TriangleMesh::read(&path).unwrap();
         assert_eq!(read.bounding_box(), mesh.bounding_box());
         assert!(check(&read).unwrap().error().is_none());
     }

@@ -44,6 +44,8 @@ impl<const D: usize> State<D> {
 
     /// Keeps the particles named by `index`, in that order.
     pub fn keep(&mut self, index: &[u32]) {
+        // Particles that no run has seen yet need not say.
+        self.pressure_gradient.resize(self.id.len(), [0.0; D]);
         self.columns().permute(index);
     }
 

@@ -16,8 +16,8 @@ pub enum MeshError {
         /// What the operating system says.
         source: std::io::Error,
     },
-    /// The file is no STL file, or a broken one.
-    #[error("{path} is not a valid STL file: {reason}; export the surface again as binary or ASCII STL", path = path.display())]
+    /// The file is no mesh file that can be read, or a broken one.
+    #[error("the mesh {path} cannot be read: {reason}; export the surface again as STL, OBJ or PLY", path = path.display())]
     Format {
         /// The file.
         path: PathBuf,
@@ -56,7 +56,7 @@ pub enum MeshError {
     /// The surface has holes.
     #[error(
         "the mesh is open: {edges} belong to only one triangle; fill the holes in a mesh editor, \
-         or merge vertices that lie close together (TriangleMesh::welded) if the holes are seams"
+         or give the sheet a thickness"
     )]
     Open {
         /// Edges of the holes.

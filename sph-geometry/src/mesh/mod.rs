@@ -2,6 +2,7 @@
 
 mod check;
 mod error;
+mod import;
 mod make;
 mod mass;
 mod stl;
@@ -9,6 +10,7 @@ mod weld;
 
 pub use check::{Defects, MeshReport, check};
 pub use error::MeshError;
+pub use import::{MeshFile, MeshFormat};
 pub use mass::{MassProperties, mass_properties};
 
 use crate::aabb::Aabb;

@@ -38,6 +38,23 @@ enum Kind<const D: usize> {
     Mesh(Arc<MeshSurface>),
     Union(Arc<Union<D>>),
     Difference(Arc<Difference<D>>),
+    Custom(Arc<dyn SignedDistance<D>>),
+}
+
+/// A set of points that a program defines itself; becomes a shape by [`Shape::custom`].
+pub trait SignedDistance<const D: usize>: std::fmt::Debug + Send + Sync {
+    /// Distance to the surface in m, negative inside, and the unit vector out of the set: the
+    /// gradient of the distance. The sign must be right everywhere and the distance at most the
+    /// true one, as points that it skips are never looked at.
+    fn nearest(&self, x: &[f64; D]) -> Nearest<D>;
+
+    /// A box around the set, infinite where the set is.
+    fn bounding_box(&self) -> Aabb<D>;
+
+    /// The distance alone, for those who have it for less.
+    fn signed_distance(&self, x: &[f64; D]) -> f64 {
+        self.nearest(x).distance
+    }
 }
 
 /// How far a surface is, and in which direction.
@@ -61,6 +78,7 @@ macro_rules! each_kind {
             Kind::HalfSpace($one) => $plain,
             Kind::Union($one) => $plain,
             Kind::Difference($one) => $plain,
+            Kind::Custom($one) => $plain,
             Kind::Polygon($surface) => $resized,
             Kind::Mesh($surface) => $resized,
         }
@@ -122,6 +140,11 @@ impl<const D: usize> Shape<D> {
         Self(Kind::Difference(Arc::new(Difference::new(first, others))))
     }
 
+    /// A set of points with a signed distance of one's own.
+    pub fn custom(shape: impl SignedDistance<D> + 'static) -> Self {
+        Self(Kind::Custom(Arc::new(shape)))
+    }
+
     /// Distance to the surface in m, negative inside.
     pub fn signed_distance(&self, x: &[f64; D]) -> f64 {
         each_kind!(self,
@@ -169,6 +192,37 @@ impl<const D: usize> Shape<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::{norm, scaled};
+
+    /// The points below the cone z = |(x, y)|.
+    #[derive(Debug)]
+    struct Cone;
+
+    impl SignedDistance<3> for Cone {
+        fn nearest(&self, x: &[f64; 3]) -> Nearest<3> {
+            let across = [x[0], x[1], 0.0];
+            let radius = norm(&across).max(1e-300);
+            let [out, up] = [-0.5_f64.sqrt(), 0.5_f64.sqrt()];
+            let mut normal = scaled(out / radius, &across);
+            normal[2] = up;
+            Nearest { distance: up * (x[2] - radius), normal }
+        }
+
+        fn bounding_box(&self) -> Aabb<3> {
+            Aabb::EVERYWHERE
+        }
+    }
+
+    #[test]
+    fn a_shape_of_ones_own_combines_with_the_others() {
+        let below = Shape::custom(Cone);
+        let cut = Shape::difference(Shape::cuboid([-1.0; 3], [1.0; 3]).unwrap(), vec![below]);
+        assert!(cut.contains(&[0.0, 0.0, 0.5]) && !cut.contains(&[0.5, 0.0, 0.2]));
+        assert!((cut.signed_distance(&[0.5, 0.0, 0.2]) - 0.3 * 0.5_f64.sqrt()).abs() < 1e-15);
+        let closest = cut.closest_point(&[0.5, 0.0, 0.2]);
+        assert!((closest[0] - 0.35).abs() < 1e-15 && (closest[2] - 0.35).abs() < 1e-15);
+        assert_eq!(cut.bounding_box(), Aabb::new([-1.0; 3], [1.0; 3]));
+    }
 
     #[test]
     fn surfaces_exist_in_their_own_dimension_only() {

@@ -28,7 +28,7 @@ macro_rules! with_shape_keys {
             pub plane: Option<At<$crate::scene::shape::PlaneKeys>>,
             /// Corners of a simple polygon in either direction; two dimensions only.
             pub polygon: Option<At<Vec<At<Vec<f64>>>>>,
-            /// A closed surface in an STL file, relative to the folder of the scene; three dimensions
+            /// A closed surface in an STL, OBJ or PLY file, relative to the folder of the scene; three dimensions
             /// only.
             pub mesh: Option<At<std::path::PathBuf>>,
             /// Everything that is in any of these shapes.

@@ -132,7 +132,13 @@ impl<const D: usize> Sample<D> {
         self.wall_density = layers / (thick * f64::from(self.side));
         let support =
             if self.side == 1 { Geometry::<D>::support(scene) } else { thick * coarse.spacing() };
-        let walls = walls::find_walls(scene, &geometry.solids, &coarse, &geometry.domain, support)?;
+        let walls = if self.side == 1 {
+            walls::find_walls(scene, &geometry.solids, &coarse, &geometry.domain, support)?
+                .positions
+        } else {
+            // Blocks cannot be cut: a block is wall when its middle is.
+            walls::find_cells(scene, &geometry.solids, &coarse, &geometry.domain, support)?
+        };
         let block = |x: &[f64; D]| -> [i32; D] {
             std::array::from_fn(|k| {
                 ((x[k] - coarse.origin()[k]) / coarse.spacing() - 0.5).round() as i32
@@ -144,7 +150,7 @@ impl<const D: usize> Sample<D> {
             .map(|(first, _, _)| first.map(|i| i.div_euclid(self.side)))
             .collect();
         let reach = (Geometry::<D>::reach(scene) / coarse.spacing()).ceil() as i32;
-        for x in &walls.positions {
+        for x in &walls {
             let cell = block(x);
             let around = cells(cell.map(|i| i - reach), cell.map(|i| i + reach + 1));
             let kind = if around.into_iter().any(|cell| wet.contains(&cell)) {

@@ -93,14 +93,14 @@ impl<'a> Shapes<'a> {
         let refuse_mesh = |error: MeshError| match error {
             MeshError::Read { source, .. } => refuse(source.to_string(), missing_help(&file)),
             MeshError::Format { reason, .. } => {
-                refuse(reason, "export the surface again as binary or ASCII STL".into())
+                refuse(reason, "export the surface again as STL, OBJ or PLY".into())
             }
             other => {
                 let (reason, help) = in_two(&other.to_string());
                 refuse(reason, help)
             }
         };
-        let mesh = TriangleMesh::read_stl(&file).map_err(refuse_mesh)?;
+        let mesh = TriangleMesh::read(&file).map_err(refuse_mesh)?;
         let report = check(&mesh).map_err(refuse_mesh)?;
         if let Some(error) = report.error() {
             return Err(refuse_mesh(error));
@@ -149,7 +149,10 @@ fn missing_help(file: &Path) -> String {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return format!("there is no folder {}; {usual}", folder.display());
     };
-    let is_mesh = |name: &String| name.to_lowercase().ends_with(".stl");
+    let is_mesh = |name: &String| {
+        let name = name.to_lowercase();
+        [".stl", ".obj", ".ply"].iter().any(|end| name.ends_with(end))
+    };
     let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names: Vec<String> = names.filter(is_mesh).collect();
     names.sort();

@@ -62,7 +62,8 @@ fn a_tank_becomes_a_lattice() {
     assert!(close(particles.position[0], [0.05, 0.05]));
     assert!(close(particles.position[1], [0.15, 0.05]));
     assert!(close(particles.position[199], [0.95, 1.95]));
-    assert!(particles.mass.iter().all(|mass| (mass - 10.0).abs() < 1e-12));
+    assert!(particles.mass[..200].iter().all(|mass| (mass - 10.0).abs() < 1e-12));
+    assert!(particles.volume.iter().all(|volume| (volume - 0.01).abs() < 1e-15));
     assert!(particles.velocity.iter().all(|v| *v == [0.0; 2]));
     let constants = &setup.constants;
     assert!((constants.support_radius - 0.3).abs() < 1e-15);

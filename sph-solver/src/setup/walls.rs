@@ -8,6 +8,7 @@ use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
 use sph_geometry::{
     Aabb, Domain, FluidSide, Lattice, Solid, WallElements, free_cells, wall_elements,
+    wall_particles,
 };
 
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
@@ -128,6 +129,34 @@ pub fn find_walls<const D: usize>(
     if solids.is_empty() {
         return Ok(WallElements::default());
     }
+    let (domain, place) = searchable(scene, lattice, bounds)?;
+    wall_elements(solids, lattice, support, &domain)
+        .map_err(|error| lattice_error(scene, place, &error))
+}
+
+/// The lattice points in material within `support` (m) of where fluid can be.
+pub fn find_cells<const D: usize>(
+    scene: &Scene,
+    solids: &[Solid<D>],
+    lattice: &Lattice<D>,
+    bounds: &Aabb<D>,
+    support: f64,
+) -> Result<Vec<[f64; D]>, SceneError> {
+    if solids.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (domain, place) = searchable(scene, lattice, bounds)?;
+    wall_particles(solids, lattice, support, &domain)
+        .map(|cells| cells.positions)
+        .map_err(|error| lattice_error(scene, place, &error))
+}
+
+/// The domain, unless it is too large to be searched, and where the scene gives it.
+fn searchable<const D: usize>(
+    scene: &Scene,
+    lattice: &Lattice<D>,
+    bounds: &Aabb<D>,
+) -> Result<(Domain<D>, scene::Place), SceneError> {
     let place = scene.domain.as_ref().map_or(scene.numerics.spacing.place, |domain| domain.place);
     let sides = (1..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
     if sides.product::<f64>() > MOST_ROWS {
@@ -142,7 +171,5 @@ pub fn find_walls<const D: usize>(
         };
         return Err(scene.error(place, kind));
     }
-    let domain = Domain { bounds: *bounds, periodic: scene.periodic_axes() };
-    wall_elements(solids, lattice, support, &domain)
-        .map_err(|error| lattice_error(scene, place, &error))
+    Ok((Domain { bounds: *bounds, periodic: scene.periodic_axes() }, place))
 }
