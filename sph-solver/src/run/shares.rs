@@ -41,3 +41,34 @@ impl<const D: usize> Shares<D> {
         (state, walls)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::setup::Setup;
+    use sph_decomp::ThreadRanks;
+
+    #[test]
+    fn every_particle_goes_to_one_rank_and_none_stays_behind() {
+        let text = "dimension = 2\nend_time = 1\ngravity = [0, -9.81]\n\
+            [numerics]\nspacing = 0.1\n\
+            [fluid.water]\ndensity = 1000\n\
+            regions = [{ box = { min = [0, 0], max = [0.7, 0.5] } }]\n\
+            [[solid]]\nname = \"tank\"\nfluid_side = \"inside\"\n\
+            box = { min = [0, 0], max = [1, 1] }\n";
+        let scene = Scene::parse("a.toml", text.into(), &[]).unwrap();
+        let particles = Setup::<2>::new(&scene).unwrap().particles;
+        let expected: Vec<u64> = (0..particles.len() as u64).collect();
+        let shares = Shares::new(particles, 3);
+        let taken = ThreadRanks::run(3, |comm| {
+            let (state, walls) = shares.take(&comm);
+            Ok::<_, String>([state.id, walls.id].concat())
+        });
+        let mut ids = taken.unwrap().concat();
+        ids.sort_unstable();
+        assert_eq!(ids, expected);
+        assert_eq!(shares.particles(), expected.len());
+        assert!(shares.rest.lock().unwrap().0.is_empty());
+    }
+}
