@@ -221,6 +221,7 @@ fn no_file_but_those_of_the_run() {
         "small-000004.vtu",
         "small-walls.vtu",
         "small.pvd",
+        "solid-tank.csv",
         "summary.json",
     ];
     assert_eq!(names, expected);
