@@ -107,7 +107,12 @@ impl Run {
     /// Runs as `mpirun -n PROCESSES` of a program built with MPI, one thread per rank.
     pub fn mpi(mut self, program: &Path, processes: usize) -> Self {
         self.processes = Some((program.into(), processes));
-        self.threads(1)
+        // The program takes the option once.
+        if self.arguments.iter().any(|argument| argument == "--threads") {
+            self
+        } else {
+            self.threads(1)
+        }
     }
 
     /// In the same MPI job, as later ranks, another command line, as if it were by mistake.
