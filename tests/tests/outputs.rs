@@ -191,7 +191,7 @@ fn vtk_and_h5py_open_everything() {
         let checkpoints = report["checkpoints"].as_array().unwrap();
         assert!(!checkpoints.is_empty());
         for checkpoint in checkpoints {
-            assert_eq!(checkpoint["fluid"], summary["particles"]["fluid"]);
+            assert_eq!(checkpoint["points"], summary["particles"]["fluid"]);
             assert!(number(checkpoint, "/time") > 0.0 && number(checkpoint, "/step") > 0.0);
             assert!(number(checkpoint, "/mass") > 0.0);
             assert!(checkpoint["scene"].as_str().unwrap().contains("[fluid."), "{checkpoint}");
