@@ -1,6 +1,7 @@
 //! A block: the state of consecutive particles, borrowed apart so that blocks advance in parallel.
 
 use crate::records::Record;
+use crate::sweep::Beside;
 use sph_neighbors::Clusters;
 
 /// Columns of the owned fluid particles that a pass may change.
@@ -74,6 +75,21 @@ pub struct Block<'a, const D: usize, S, R> {
     pub new: &'a mut [Record<S>],
 }
 
+/// The particles of a block as targets of a sum: read only.
+#[derive(Debug, Clone, Copy)]
+pub struct Targets<'a, const D: usize> {
+    /// Index of the first one among the fluid particles of the rank.
+    pub first: usize,
+    /// Positions, m.
+    pub position: &'a [[f64; D]],
+    /// Densities, kg/m³.
+    pub density: &'a [f64],
+    /// Masses, kg.
+    pub mass: &'a [f64],
+    /// What wall terms are told of them.
+    pub beside: Beside<'a, D>,
+}
+
 impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
     /// Number of particles.
     pub fn len(&self) -> usize {
@@ -122,6 +138,21 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 new: new2,
             },
         )
+    }
+
+    /// What sums over walls read of the particles, and the rates that they add to.
+    pub fn targets(&mut self) -> (Targets<'_, D>, &mut [R]) {
+        let targets = Targets {
+            first: self.first,
+            position: self.position,
+            density: self.density,
+            mass: self.mass,
+            beside: Beside {
+                lowest_pressure: self.lowest_wall_pressure,
+                pressure_gradient: self.pressure_gradient,
+            },
+        };
+        (targets, self.rates)
     }
 
     /// The smallest number of particles, at least `size`, after which a cluster begins or the block

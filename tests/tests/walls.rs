@@ -187,6 +187,46 @@ energies = 0.25
     assert!(drag > 0.05 && (drag / last(&top, "friction_force_x") - 1.0).abs() < 0.01, "{drag}");
 }
 
+#[test]
+fn a_viscous_fluid_slips_along_a_wall_that_says_so() {
+    let text = r#"name = "slips"
+dimension = 2
+end_time = 0.4
+gravity = [0.8, 0.0]
+periodic = ["x"]
+[domain]
+min = [0, -0.2]
+max = [0.4, 1.2]
+[numerics]
+spacing = 0.05
+sound_speed = 10
+[fluid.water]
+density = 1.0
+viscosity = 0.1
+regions = [{ box = { min = [0, 0], max = [0.4, 1] } }]
+[[solid]]
+name = "bottom"
+plane = { point = [0, 0], normal = [0, 1] }
+wall_friction = "slip"
+[[solid]]
+name = "top"
+plane = { point = [0, 1], normal = [0, -1] }
+wall_friction = "slip"
+[output]
+energies = 0.1
+"#;
+    let results = run(text);
+    let energies = results.table("energies");
+    // Nothing holds it back: all of it falls freely along the walls.
+    for (t, momentum) in energies.times().iter().zip(energies.column("momentum_x")) {
+        assert!((momentum - 0.4 * 0.8 * t).abs() < 1e-9, "{momentum} kg m/s at t = {t}");
+    }
+    for name in ["bottom", "top"] {
+        let friction = results.table(&format!("solid-{name}")).column("friction_force_x");
+        assert!(friction.iter().all(|force| *force == 0.0), "{name}: {friction:?}");
+    }
+}
+
 /// Taylor–Green vortices in a box without sides (Taylor & Green 1937), shifted.
 fn vortices(scheme: &str) -> String {
     format!(

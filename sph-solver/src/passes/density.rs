@@ -2,7 +2,7 @@ use crate::block::Block;
 use crate::lio::{Extremes, Pass};
 use crate::loads::Loads;
 use crate::model::Model;
-use crate::passes::Surroundings;
+use crate::passes::{Surroundings, add};
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, motion, record};
 use crate::scheme::Scheme;
 use crate::spray::{is_inside, is_spray};
@@ -43,7 +43,8 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
     fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Loads {
         self.around.sum_fluid(&*self.scheme.density, old, block);
         if let Some(sum) = &self.scheme.wall_density {
-            self.around.add_walls(&**sum, old, block, |_, _, _| ());
+            let (targets, rates) = block.targets();
+            self.around.of_walls(&**sum, old, &targets, |_| true, |_, own| add(rates, own));
         }
         if let Some(sum) = &self.scheme.shifting {
             self.around.crowding(&**sum, self.scheme.wall_shifting.as_deref(), old, block);

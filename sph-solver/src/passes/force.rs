@@ -2,11 +2,12 @@ use crate::block::Block;
 use crate::lio::{Extremes, Pass};
 use crate::loads::{LoadScale, Loads, Part};
 use crate::model::Model;
-use crate::passes::Surroundings;
+use crate::passes::{Surroundings, add};
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, record};
 use crate::scheme::Scheme;
 use crate::space;
 use crate::terms::Acceleration;
+use crate::walls::WallSet;
 use bytemuck::Pod;
 use sph_kernels::Real;
 use sph_neighbors::Clusters;
@@ -54,7 +55,8 @@ fn felt_gradient<const D: usize>(
 }
 
 impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
-    /// Adds a part of the accelerations by walls, and of the loads on them.
+    /// Adds a part of the accelerations by walls, and of the loads on them. Walls along which the fluid
+    /// slips have no friction.
     fn add_walls(
         &self,
         part: Part,
@@ -67,7 +69,13 @@ impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
             Part::Friction => &self.scheme.wall_friction,
         };
         let Some(sum) = sum else { return };
-        self.around.add_walls(&**sum, old, block, |wall, block, own| {
+        let acts = |wall: &WallSet<D, S>| match part {
+            Part::Pressure => true,
+            Part::Friction => self.model.solid(wall.solid).is_none_or(|solid| !solid.slips),
+        };
+        let (targets, rates) = block.targets();
+        self.around.of_walls(&**sum, old, &targets, acts, |wall, own| {
+            add(rates, own);
             let (Some(scale), Some(solid)) = (&self.loads, self.model.solid(wall.solid)) else {
                 return;
             };
@@ -75,9 +83,9 @@ impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
                 if a.iter().all(|a| *a == 0.0) {
                     continue;
                 }
-                let force = a.map(|a| -block.mass[k] * a);
+                let force = a.map(|a| -targets.mass[k] * a);
                 let periods = &self.around.scale.periods;
-                let arm = space::offset(&block.position[k], &solid.center, periods);
+                let arm = space::offset(&targets.position[k], &solid.center, periods);
                 loads.add(wall.solid, part, force, arm, scale);
             }
         });

@@ -20,12 +20,11 @@ mod force;
 pub use density::{DENSEST, DensityPass};
 pub use force::{ForcePass, kicked};
 
-use crate::block::Block;
+use crate::block::{Block, Targets};
 use crate::groups::{GroupSum, GroupView};
 use crate::records::Record;
 use crate::space::PairScale;
-use crate::sweep::Beside;
-use crate::terms::{DensityRate, Rate, VectorSum};
+use crate::terms::{Rate, VectorSum};
 use crate::walls::WallSet;
 use sph_neighbors::ClusterList;
 
@@ -55,72 +54,57 @@ impl<const D: usize, S> Surroundings<'_, D, S> {
         }
     }
 
+    /// Shows `part` each wall that a block is near, with its sum for every target of the block.
+    /// Walls that `acts` says no to are left out.
+    fn of_walls<R: Rate>(
+        &self,
+        sum: &dyn GroupSum<D, S, R>,
+        old: &[Record<S>],
+        targets: &Targets<'_, D>,
+        acts: impl Fn(&WallSet<D, S>) -> bool,
+        mut part: impl FnMut(&WallSet<D, S>, &[R]),
+    ) {
+        let mut own = Vec::new();
+        for wall in self.walls.iter().filter(|wall| acts(wall)) {
+            own.resize(targets.density.len(), R::default());
+            let view = GroupView {
+                targets: old,
+                sources: &wall.records,
+                list: &wall.near,
+                scale: self.scale,
+                beside: Some(targets.beside),
+            };
+            if sum.sum(view, targets.first, targets.density, &mut own) {
+                part(wall, &own);
+            }
+        }
+    }
+
     /// Sets the shifts of a block to the sums of how crowded fluid and walls are.
-    fn crowding(
+    fn crowding<R>(
         &self,
         fluid: &dyn GroupSum<D, S, VectorSum<D>>,
         wall: Option<&dyn GroupSum<D, S, VectorSum<D>>>,
         old: &[Record<S>],
-        block: &mut Block<'_, D, S, DensityRate>,
+        block: &mut Block<'_, D, S, R>,
     ) {
         let mut sums = vec![VectorSum::default(); block.len()];
-        let mut own = sums.clone();
         let list = self.near_fluid;
         let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
         fluid.sum(view, block.first, block.density, &mut sums);
-        for set in self.walls {
-            let Some(wall) = wall else { break };
-            let beside = Beside {
-                lowest_pressure: block.lowest_wall_pressure,
-                pressure_gradient: block.pressure_gradient,
-            };
-            let view = GroupView {
-                targets: old,
-                sources: &set.records,
-                list: &set.near,
-                scale: self.scale,
-                beside: Some(beside),
-            };
-            if wall.sum(view, block.first, block.density, &mut own) {
-                sums.iter_mut().zip(&own).for_each(|(sum, own)| *sum += *own);
-            }
+        if let Some(wall) = wall {
+            let (targets, _) = block.targets();
+            self.of_walls(wall, old, &targets, |_| true, |_, own| add(&mut sums, own));
         }
         for (shift, VectorSum(sum)) in block.shift.iter_mut().zip(sums) {
             *shift = sum;
         }
     }
+}
 
-    /// Adds the sums over the elements of each wall to the rates of a block. `part` is shown what each
-    /// wall contributed.
-    fn add_walls<R: Rate>(
-        &self,
-        sum: &dyn GroupSum<D, S, R>,
-        old: &[Record<S>],
-        block: &mut Block<'_, D, S, R>,
-        mut part: impl FnMut(&WallSet<D, S>, &Block<'_, D, S, R>, &[R]),
-    ) {
-        let mut own = Vec::new();
-        for wall in self.walls {
-            own.resize(block.len(), R::default());
-            let list = &wall.near;
-            let beside = Beside {
-                lowest_pressure: block.lowest_wall_pressure,
-                pressure_gradient: block.pressure_gradient,
-            };
-            let view = GroupView {
-                targets: old,
-                sources: &wall.records,
-                list,
-                scale: self.scale,
-                beside: Some(beside),
-            };
-            if !sum.sum(view, block.first, block.density, &mut own) {
-                continue;
-            }
-            for (rate, own) in block.rates.iter_mut().zip(&own) {
-                *rate += *own;
-            }
-            part(wall, block, &own);
-        }
+/// Adds what one group contributes.
+fn add<R: Rate>(rates: &mut [R], group: &[R]) {
+    for (rate, part) in rates.iter_mut().zip(group) {
+        *rate += *part;
     }
 }

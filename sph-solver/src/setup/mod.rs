@@ -110,7 +110,9 @@ impl<const D: usize> Setup<D> {
             artificial_viscosity: scene.artificial_viscosity(),
             density_diffusion: *numerics.density_diffusion,
             viscosity: scene.viscosity(),
-            closed: walls::is_closed(scene, &solids, &lattice, &domain, filling.position.len())?,
+            // Only a scheme that shifts particles asks, and an answer takes a search of the domain.
+            closed: *numerics.scheme == scene::Scheme::DeltaPlus
+                && walls::is_closed(scene, &solids, &lattice, &domain, filling.position.len())?,
             cavitation_pressure: fluid.cavitation_pressure.map(|pressure| *pressure),
             domain: (domain.min, domain.max),
             periods: domain::periods(scene, &domain, spacing, Geometry::<D>::reach(scene))?,

@@ -71,15 +71,7 @@ pub fn is_closed<const D: usize>(
     bounds: &Aabb<D>,
     fluid: usize,
 ) -> Result<bool, SceneError> {
-    // The larger of the two numbers is soon known where the domain is much larger than the fluid.
-    let cells = (0..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
-    if solids.is_empty() || cells.product::<f64>() > 4.0 * fluid as f64 {
-        let periodic = scene.periodic_axes::<D>().iter().all(|periodic| *periodic);
-        let cells = (0..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
-        return Ok(periodic && (cells.product::<f64>() - fluid as f64).abs() < 0.5);
-    }
-    let domain = Domain { bounds: *bounds, periodic: scene.periodic_axes() };
-    let place = scene.numerics.spacing.place;
+    let (domain, place) = searchable(scene, lattice, bounds)?;
     let free = free_cells(solids, lattice, &domain)
         .map_err(|error| lattice_error(scene, place, &error))?;
     Ok(free.count() <= fluid as u64)
