@@ -22,6 +22,7 @@ pub mod simulation;
 pub mod space;
 pub mod spray;
 pub mod state;
+pub mod study;
 pub mod sweep;
 pub mod team;
 pub mod terms;
