@@ -21,6 +21,7 @@ pub mod setup;
 pub mod simulation;
 pub mod space;
 pub mod spray;
+pub mod stability;
 pub mod state;
 pub mod study;
 pub mod sweep;

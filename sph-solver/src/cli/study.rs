@@ -75,8 +75,12 @@ pub fn main(arguments: &StudyArguments) -> ExitCode {
         }
         Err(error) => {
             diagnostics::show_plain(&error);
-            let bad =
-                matches!(error, StudyError::Request { .. } | StudyError::OtherSettings { .. });
+            let bad = matches!(
+                error,
+                StudyError::Request { .. }
+                    | StudyError::OtherSettings { .. }
+                    | StudyError::Refused { .. }
+            );
             ExitCode::from(if bad { BAD_INPUT } else { FAILED })
         }
     }

@@ -38,7 +38,7 @@ pub struct Reference {
     pub column: Option<At<String>>,
     /// How differences become one number.
     #[serde(default)]
-    pub norm: Norm,
+    pub norm: At<Norm>,
     /// What errors are divided by, in the unit of what is compared. When absent, the same norm of the
     /// reference.
     #[schemars(extend("exclusiveMinimum" = 0))]

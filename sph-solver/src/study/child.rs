@@ -10,6 +10,8 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 
 /// Exit code of a run that reached its limit of wall-clock time.
 const STOPPED: i32 = 75;
+/// Exit code of a run whose scene is wrong, such as for a period that is no whole number of spacings.
+const BAD_INPUT: i32 = 2;
 
 /// A run that goes on.
 pub struct Running {
@@ -66,16 +68,19 @@ impl Running {
 ///
 /// # Errors
 ///
-/// A run that a signal ended: it says nothing about the flow.
+/// A run that a signal ended, or one that was refused: it says nothing about the flow.
 pub fn outcome(status: ExitStatus, study: &Path, case: &Case) -> Result<Outcome, StudyError> {
     match status.code() {
         Some(0) => Ok(Outcome::Finished),
         Some(STOPPED) => Ok(Outcome::OutOfTime),
-        Some(_) => {
+        Some(code) => {
             let text = std::fs::read_to_string(log(study, case)).unwrap_or_default();
             let line = text.lines().map(str::trim).find(|line| line.starts_with("error:"));
             let line = line.or_else(|| text.lines().next()).unwrap_or("it did not say why");
             let message = line.trim_start_matches("error:").trim().to_owned();
+            if code == BAD_INPUT {
+                return Err(StudyError::Refused { name: case.name.clone(), message });
+            }
             Ok(Outcome::Diverged { message })
         }
         None => Err(StudyError::Request {

@@ -31,6 +31,14 @@ pub enum StudyError {
         /// Lines that differ.
         difference: String,
     },
+    /// A run that cannot be.
+    #[error("the run {name} was refused: {message}; leave its values out of --over")]
+    Refused {
+        /// Name of the run.
+        name: String,
+        /// What it said.
+        message: String,
+    },
     /// A file of the study.
     #[error(transparent)]
     File(#[from] IoError),

@@ -110,11 +110,13 @@ fn error_of(
             let pairs = window.filter_map(|&(time, value)| Some((value, known(time)?)));
             let pairs: Vec<(f64, f64)> = pairs.collect();
             // A run stops a step after the last time of its reference.
-            if reference.norm == Norm::Last && matches!(truth, Truth::Values(_)) && pairs.is_empty()
+            if *reference.norm == Norm::Last
+                && matches!(truth, Truth::Values(_))
+                && pairs.is_empty()
             {
                 return Err("the reference ends before the run".into());
             }
-            norms::error(&pairs, reference.norm, reference.scale.map(|scale| *scale))
+            norms::error(&pairs, *reference.norm, reference.scale.map(|scale| *scale))
         }
     };
     if error.is_finite() {

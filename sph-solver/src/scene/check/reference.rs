@@ -54,9 +54,9 @@ fn field(values: &Values<'_>, reference: &At<Reference>) -> Result<(), SceneErro
             return Err(values.invalid(compare.place, what, "remove the key"));
         }
     }
-    if matches!(reference.norm, Norm::Mean | Norm::Last) {
+    if matches!(*reference.norm, Norm::Mean | Norm::Last) {
         let what = format!("the norm {} is for columns of tables", reference.norm.name());
-        return Err(values.invalid(reference.place, what, "use l1, l2 or max"));
+        return Err(values.invalid(reference.norm.place, what, "use l1, l2 or max"));
     }
     let not_for = [
         ("table", reference.table.as_ref().map(|value| value.place)),
@@ -86,7 +86,7 @@ fn column(values: &Values<'_>, reference: &At<Reference>) -> Result<(), SceneErr
         let what = format!("`reference.file_columns` has {} names", columns.len());
         return Err(values.invalid(columns.place, what, "give two: time and value"));
     }
-    if values.scene.output.energies.is_none() && reference.norm != Norm::Last {
+    if values.scene.output.energies.is_none() && *reference.norm != Norm::Last {
         let what = "the tables of this scene have one row only".into();
         let help = "set output.energies, the seconds between two rows, or norm = \"last\"";
         return Err(values.invalid(table.place, what, help));
