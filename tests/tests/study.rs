@@ -141,6 +141,26 @@ fn seeds_give_a_spread_and_a_table() {
     assert!(folder.path().join("accuracy/scene.svg").exists());
 }
 
+/// A study that was ended goes on where it was; the run that was on its way is made again.
+#[test]
+fn an_ended_study_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = write_scene(folder.path(), VORTICES);
+    let out = folder.path().join("study");
+    let long = ["--set", "end_time=100", "--over", "numerics.spacing=0.05,0.025"];
+    let mut running = study(&scene, &out, &long).start();
+    let begun = out.join("runs/spacing-0.05/energies.csv");
+    assert!(running.wait_for(|| begun.exists()));
+    running.signal("INT");
+    let outcome = running.wait();
+    assert_eq!(outcome.status.code(), Some(75), "{outcome}");
+    outcome.message.assert_contains(&["goes on with the runs that are missing"]);
+    assert!(!out.join("runs/spacing-0.05.json").exists(), "a run that never ended");
+    // The other end time makes it another study.
+    let outcome = study(&scene, &out, &[]).succeed();
+    assert_eq!(outcome.message.count(": finished"), 2, "{outcome}");
+}
+
 /// A column of a table against a formula, a CSV and the finest run; a run that diverges is a row.
 #[test]
 fn columns_are_compared_and_a_divergence_is_a_row() {

@@ -5,7 +5,7 @@ use super::outcome::Outcome;
 use super::plan::Case;
 use super::pool::Program;
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 
 /// Exit code of a run that reached its limit of wall-clock time.
@@ -68,28 +68,36 @@ impl Running {
 ///
 /// # Errors
 ///
-/// A run that a signal ended, or one that was refused: it says nothing about the flow.
-pub fn outcome(status: ExitStatus, study: &Path, case: &Case) -> Result<Outcome, StudyError> {
+/// A run that was refused, ended from outside, or failed for another reason than its flow: it says
+/// nothing, and is to be made again.
+pub fn outcome(
+    program: &Program,
+    status: ExitStatus,
+    study: &Path,
+    case: &Case,
+) -> Result<Outcome, StudyError> {
+    let name = case.name.clone();
     match status.code() {
         Some(0) => Ok(Outcome::Finished),
-        Some(STOPPED) => Ok(Outcome::OutOfTime),
+        Some(STOPPED) if program.max_wall.is_some() && program.stop.reason().is_none() => {
+            Ok(Outcome::OutOfTime)
+        }
+        None | Some(STOPPED) => Err(StudyError::Killed { name }),
         Some(code) => {
             let text = std::fs::read_to_string(log(study, case)).unwrap_or_default();
             let line = text.lines().map(str::trim).find(|line| line.starts_with("error:"));
             let line = line.or_else(|| text.lines().next()).unwrap_or("it did not say why");
             let message = line.trim_start_matches("error:").trim().to_owned();
-            if code == BAD_INPUT {
-                return Err(StudyError::Refused { name: case.name.clone(), message });
+            match code {
+                BAD_INPUT => Err(StudyError::Refused { name, message }),
+                // What goes wrong in the flow goes wrong at a time.
+                _ if message.contains("t = ") => Ok(Outcome::Diverged { message }),
+                _ => Err(StudyError::Failed { name, message }),
             }
-            Ok(Outcome::Diverged { message })
         }
-        None => Err(StudyError::Request {
-            what: format!("the run {} was killed", case.name),
-            help: "the same command goes on with the runs that are missing".into(),
-        }),
     }
 }
 
-fn log(study: &Path, case: &Case) -> std::path::PathBuf {
+fn log(study: &Path, case: &Case) -> PathBuf {
     study.join("runs").join(format!("{}.log", case.name))
 }

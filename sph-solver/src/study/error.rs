@@ -39,6 +39,22 @@ pub enum StudyError {
         /// What it said.
         message: String,
     },
+    /// A run that failed for another reason than its flow.
+    #[error(
+        "the run {name} failed: {message}; the same command goes on with the runs that are missing"
+    )]
+    Failed {
+        /// Name of the run.
+        name: String,
+        /// What it said.
+        message: String,
+    },
+    /// A run that was ended from outside.
+    #[error("the run {name} was killed; the same command goes on with the runs that are missing")]
+    Killed {
+        /// Name of the run.
+        name: String,
+    },
     /// A file of the study.
     #[error(transparent)]
     File(#[from] IoError),

@@ -128,8 +128,10 @@ fn error_of(
 
 /// The error that the run has written: its last one, or the mean over the window.
 fn field_error(series: &Series, from: Option<f64>, until: f64) -> f64 {
-    let within = series.iter().filter(|(time, _)| *time <= until);
-    let Some(from) = from else { return within.last().map_or(f64::NAN, |(_, error)| *error) };
+    let mut within = series.iter().filter(|(time, _)| *time <= until);
+    let Some(from) = from else {
+        return within.next_back().map_or(f64::NAN, |(_, error)| *error);
+    };
     let errors: Vec<f64> =
         within.filter(|(time, _)| *time >= from).map(|(_, error)| *error).collect();
     errors.iter().sum::<f64>() / errors.len() as f64

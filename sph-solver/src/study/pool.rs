@@ -71,12 +71,14 @@ pub fn run_all(
         if running.is_empty() {
             break Ok(());
         }
-        match look(plan, study, &mut running) {
+        match look(plan, study, program, &mut running) {
             Ok(None) => std::thread::sleep(GLANCE),
             Ok(Some((index, outcome))) => {
                 tell(&plan.cases[index], &outcome, true);
                 outcomes[index] = Some(outcome);
             }
+            // A signal to all processes reaches the runs as well.
+            Err(_) if program.stop.reason().is_some() => break Err(StudyError::Stopped),
             Err(error) => break Err(error),
         }
     };
@@ -89,6 +91,7 @@ pub fn run_all(
 fn look(
     plan: &Plan,
     study: &Path,
+    program: &Program,
     running: &mut Vec<(usize, Running)>,
 ) -> Result<Option<(usize, Outcome)>, StudyError> {
     for place in 0..running.len() {
@@ -98,7 +101,7 @@ fn look(
         running.swap_remove(place);
         let case = &plan.cases[index];
         let system = |source| StudyError::System { path: case.folder(study), source };
-        let outcome = child::outcome(status.map_err(system)?, study, case)?;
+        let outcome = child::outcome(program, status.map_err(system)?, study, case)?;
         Record::keep(study, case, outcome.clone())?;
         return Ok(Some((index, outcome)));
     }
