@@ -68,8 +68,8 @@ fn row(text: &mut String, report: &Report, curve: &Curve, case: &str, title: &st
     });
     let at_bar = report.bar.and_then(|bar| curve.costs.iter().find(|cost| cost.error == bar));
     let at_bar = at_bar.map_or("–".into(), |at| match at.cost {
-        Cost::Yes(seconds) => format!("{seconds:.1}"),
-        Cost::AtMost(seconds) => format!("< {seconds:.1}"),
+        Cost::Yes(seconds) => format!("{seconds:.2}"),
+        Cost::AtMost(seconds) => format!("< {seconds:.2}"),
         Cost::No => "not reached".into(),
     });
     let _ = writeln!(
@@ -78,7 +78,7 @@ fn row(text: &mut String, report: &Report, curve: &Curve, case: &str, title: &st
         finest.map_or("–".into(), |point| point.spacing.to_string()),
         report.bar.map_or("–".into(), short),
         curve.order.map_or("–".into(), |order| format!("{order:.1}")),
-        finest.and_then(|p| p.core_seconds).map_or("–".into(), |cost| format!("{cost:.1}")),
+        finest.and_then(|p| p.core_seconds).map_or("–".into(), |cost| format!("{cost:.2}")),
     );
 }
 
