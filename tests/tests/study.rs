@@ -1,7 +1,7 @@
 //! `sph study`: errors against cost, from a small flow whose solution is known.
 
 use serde_json::Value;
-use sph_tests::{Outcome, Run, line_of, write_scene};
+use sph_tests::{Outcome, Results, Run, line_of, write_scene};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -211,6 +211,25 @@ fn columns_are_compared_and_a_divergence_is_a_row() {
         .collect();
     assert_eq!(outcomes, ["finished", "diverged", "finished", "diverged"], "{outcome}");
     assert!(outcome.output.contains("diverged: the run diverged"), "{outcome}");
+}
+
+#[test]
+fn errors_have_the_same_bits_on_any_ranks() {
+    let folder = tempfile::tempdir().unwrap();
+    let pressure = "pressure = \"-(cos(4*pi*x) + cos(4*pi*y))*exp(-1.6*pi^2*t)/4\"";
+    let velocity = VORTICES.split_once("[reference]").unwrap().1;
+    let velocity = velocity.split_once("norm").unwrap().0;
+    for text in [VORTICES.to_owned(), VORTICES.replace(velocity, &format!("\n{pressure}\n"))] {
+        let scene = write_scene(folder.path(), &text);
+        let tables = [1, 2, 5].map(|ranks| {
+            let jitter = Run::new(&scene).set("fluid.water.jitter=0.3").ranks(ranks);
+            let results = Results::of(jitter.threads(1).end_time(0.1));
+            let table = results.table("reference");
+            assert!(table.rows.len() >= 3, "{table:?}");
+            fs::read(results.path().join("reference.csv")).unwrap()
+        });
+        assert!(tables.iter().all(|table| *table == tables[0]));
+    }
 }
 
 /// Asserts that a study of the vortices is refused after `old` became `new`, for the line with `new`.
