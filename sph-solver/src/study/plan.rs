@@ -102,6 +102,7 @@ impl Plan {
                 cases.push(case(request, &axes, &chosen, seed, &seed_key)?);
             }
         }
+        tell_apart(&mut cases);
         Ok(Self { scene, path: request.scene.clone(), axes, cases })
     }
 }
@@ -174,13 +175,30 @@ fn case(
     })
 }
 
+/// Numbers names that are alike: letters that no file system takes may be all that differs.
+fn tell_apart(cases: &mut [Case]) {
+    for i in 1..cases.len() {
+        let (before, rest) = cases.split_at_mut(i);
+        let taken = |name: &str| before.iter().any(|case| case.name == name);
+        let name = rest[0].name.clone();
+        let mut number = 2;
+        while taken(&rest[0].name) {
+            rest[0].name = format!("{name}-{number}");
+            number += 1;
+        }
+    }
+}
+
+/// Longest name of a folder; file systems take 255 bytes, and files beside it are named after it.
+const LONGEST_NAME: usize = 100;
+
 /// A name for the folder of a run, of letters that every file system takes.
 fn file_name(parts: &[String]) -> String {
     if parts.is_empty() {
         return "run".into();
     }
     let fits = |c: char| if c.is_alphanumeric() || "-.+".contains(c) { c } else { '_' };
-    parts.join("_").chars().map(fits).collect()
+    parts.join("_").chars().map(fits).take(LONGEST_NAME).collect()
 }
 
 impl Case {
@@ -210,8 +228,24 @@ mod tests {
     }
 
     #[test]
+    fn names_that_are_alike_are_numbered() {
+        let case = |name: &str| Case {
+            name: name.into(),
+            settings: vec![],
+            spacing: 1.0,
+            seed: None,
+            overrides: vec![],
+            identity: String::new(),
+        };
+        let mut cases = ["a", "b", "a", "a-2", "a"].map(case);
+        tell_apart(&mut cases);
+        let names = cases.map(|case| case.name);
+        assert_eq!(names, ["a", "b", "a-2", "a-2-2", "a-3"]);
+    }
+
+    #[test]
     fn names_are_names_of_files() {
         let name = file_name(&["spacing-0.02".into(), "v-[\"x/2\", 1]".into()]);
-        assert_eq!(name, "spacing-0.02_v-___x_2___1_");
+        assert_eq!(name, "spacing-0.02_v-__x_2___1_");
     }
 }
