@@ -41,6 +41,11 @@ impl Run {
         Self::command("partition", scene).arg("--ranks").arg(ranks)
     }
 
+    /// `sph study SCENE`, one run of one thread at a time.
+    pub fn study(scene: impl AsRef<Path>) -> Self {
+        Self::command("study", scene).arg("--jobs").arg("1")
+    }
+
     fn command(name: &str, scene: impl AsRef<Path>) -> Self {
         Self {
             arguments: vec![name.into(), scene.as_ref().into()],

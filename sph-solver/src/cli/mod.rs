@@ -12,6 +12,7 @@ mod diagnostics;
 mod partition;
 mod progress;
 mod run;
+mod study;
 
 use crate::scene::{Scene, SceneError};
 use clap::{Args, Parser, Subcommand};
@@ -43,6 +44,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Divide a scene among many ranks without running it, and predict the time of a step
     Partition(partition::PartitionArguments),
+    /// Run scenes over spacings, schemes and seeds, and report their errors against their cost
+    Study(study::StudyArguments),
 }
 
 /// Which scene.
@@ -67,6 +70,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
         Command::Partition(arguments) => partition::main(&arguments),
+        Command::Study(arguments) => study::main(&arguments),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The loop of a run on one rank: steps, outputs, checkpoints.
 
 use super::checkpoints::{self, Kept, Progress};
+use super::cpu_time::cpu_seconds;
 use super::digest::Digest;
 use super::files::Files;
 use super::gather::gather_by_id;
@@ -63,6 +64,10 @@ pub struct Finished<const D: usize> {
     pub resumed_at: Option<f64>,
     /// Wall-clock time of the loop.
     pub elapsed: Duration,
+    /// CPU seconds of this process in the loop, where the system tells.
+    pub cpu_seconds: Option<f64>,
+    /// Largest speed of the fluid (m/s) and when it had it (s).
+    pub fastest: (f64, f64),
 }
 
 /// Runs one rank to the end. Collective. `state` is the share of the initial particles of this
@@ -77,6 +82,7 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
     watch: &(dyn Fn(Status) + Sync),
 ) -> Result<(Simulation<'a, D, S>, Finished<D>), RunError> {
     let start = Instant::now();
+    let cpu_start = cpu_seconds();
     let solids = model.solids.len();
     let mut loads = LoadLog::new(solids, load_scale(&model));
     let (state, clock, progress) = if plan.resume {
@@ -108,6 +114,8 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
         kept: None,
         saved: None,
         fast: false,
+        fastest: (0.0, 0.0),
+        compressed: false,
     };
     let mut stopping = None;
     let mut simulation = Simulation::new(comm, team, model, scheme, state, elements, clock)?;
@@ -162,6 +170,8 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
                     snapshots: files.map_or(0, |files| files.snapshots()),
                     resumed_at,
                     elapsed: start.elapsed(),
+                    cpu_seconds: cpu_seconds().zip(cpu_start).map(|(end, start)| end - start),
+                    fastest: out.fastest,
                 };
                 return Ok((simulation, finished));
             }
@@ -220,11 +230,19 @@ struct Outputs<'a, const D: usize> {
     saved: Option<u64>,
     /// Whether the flow has been called too fast.
     fast: bool,
+    /// Largest speed (m/s) and its time (s).
+    fastest: (f64, f64),
+    /// Whether the fluid has been called too compressed.
+    compressed: bool,
 }
 
 /// Flows faster than this fraction of the sound speed are called too fast: the density then varies
 /// by more than 2 %.
 const FASTEST_MACH: f64 = 0.15;
+
+/// A density that differs by more than this fraction from that at rest is called too compressed: what
+/// is simulated is hardly a liquid any more.
+const LARGEST_COMPRESSION: f64 = 0.03;
 
 impl<const D: usize> Outputs<'_, D> {
     fn walls<S: Real + Pod>(
@@ -341,6 +359,9 @@ impl<const D: usize> Outputs<'_, D> {
     fn notice_speed<S: Real + Pod>(&mut self, simulation: &Simulation<'_, D, S>) {
         let speed = simulation.largest_speed();
         let sound_speed = simulation.model().limits.sound_speed;
+        if speed > self.fastest.0 {
+            self.fastest = (speed, simulation.time());
+        }
         if self.comm.rank() != 0 || self.fast || speed <= FASTEST_MACH * sound_speed {
             return;
         }
@@ -352,6 +373,23 @@ impl<const D: usize> Outputs<'_, D> {
             simulation.time(),
             speed / sound_speed,
             10.0 * speed,
+        ));
+    }
+
+    /// Says it, once, when the fluid is compressed beyond what a liquid would be.
+    fn notice_compression(&mut self, model: &Model<D>, time: f64, budget: &Budget<D>) {
+        let compression = budget.compression;
+        if self.comm.rank() != 0 || self.compressed || compression <= LARGEST_COMPRESSION {
+            return;
+        }
+        self.compressed = true;
+        self.plan.notes.add(format!(
+            "at t = {time:.4} s the density differs from that at rest by {:.1} % somewhere: beyond \
+             {:.0} % the fluid is no liquid any more. A larger numerics.sound_speed than {:.3} m/s \
+             makes it stiffer",
+            100.0 * compression,
+            100.0 * LARGEST_COMPRESSION,
+            model.limits.sound_speed,
         ));
     }
 
@@ -367,16 +405,22 @@ impl<const D: usize> Outputs<'_, D> {
         simulation.clock()?;
         let model = simulation.model();
         let budget = samples::budget(self.comm, model, full)?;
+        self.notice_compression(model, full.time, &budget);
         self.first_budget.get_or_insert(budget);
         if last || self.samples.due(full.time) {
             let kernel = &simulation.scheme().kernel;
             let read = |(_, probe)| samples::read(self.comm, model, kernel, full, probe);
             let probes = self.plan.probes.iter().map(|(name, probe)| (name, probe));
             let readings = probes.map(read).collect::<Result<Vec<_>, _>>()?;
+            let reference = self.plan.reference.as_ref();
+            let errors = reference.map(|known| known.errors(self.comm, model, full)).transpose()?;
             let loads = self.loads.rows(self.comm)?;
             if let Some(files) = files.as_deref_mut() {
                 files.samples(full.time, &budget, &readings)?;
                 files.loads::<D>(full.time, &loads)?;
+                if let Some(errors) = errors {
+                    files.errors(full.time, &errors)?;
+                }
             }
             self.samples.done(full.time);
         }

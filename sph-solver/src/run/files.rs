@@ -21,6 +21,7 @@ pub struct Files {
     energies: TableWriter,
     probes: Vec<TableWriter>,
     solids: Vec<TableWriter>,
+    reference: Option<TableWriter>,
     lost: TableWriter,
     snapshots: u64,
 }
@@ -70,6 +71,10 @@ impl Files {
                 .iter()
                 .map(|name| table(&format!("solid-{name}"), &load_columns(D)))
                 .collect::<Result<_, _>>()?,
+            reference: match &plan.reference {
+                Some(reference) => Some(table("reference", &reference.columns())?),
+                None => None,
+            },
             lost: table("lost", &lost_columns(D))?,
             snapshots: 0,
         })
@@ -130,6 +135,14 @@ impl Files {
         Ok(())
     }
 
+    /// Appends a row to the table of errors against the reference.
+    pub fn errors(&mut self, time: f64, errors: &[f64]) -> Result<(), RunError> {
+        match &mut self.reference {
+            Some(table) => Ok(table.row(time, errors)?),
+            None => Ok(()),
+        }
+    }
+
     /// Appends a row to the table of each solid.
     pub fn loads<const D: usize>(&mut self, time: f64, rows: &[LoadRow]) -> Result<(), RunError> {
         for (table, row) in self.solids.iter_mut().zip(rows) {
@@ -174,7 +187,7 @@ fn single_scalars(scalars: &[f64]) -> Vec<f32> {
 const AXES: [(&str, &str); 3] =
     [("momentum_x", "kg m/s"), ("momentum_y", "kg m/s"), ("momentum_z", "kg m/s")];
 
-fn energy_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
+pub(super) fn energy_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
     let mut columns = vec![("kinetic", "J"), ("potential", "J"), ("elastic", "J")];
     columns.extend(&AXES[..dimension]);
     columns.extend([("compression", "1"), ("speed", "m/s")]);
@@ -186,7 +199,7 @@ fn load_axes(dimension: usize) -> (Range<usize>, Range<usize>) {
     if dimension == 2 { (0..2, 5..6) } else { (0..3, 3..6) }
 }
 
-fn load_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
+pub(super) fn load_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
     // In two dimensions a load is that on a metre of depth.
     let (force, moment) = if dimension == 2 { ("N/m", "N") } else { ("N", "N m") };
     let (forces, moments) = load_axes(dimension);

@@ -7,6 +7,7 @@ use super::gauges::patch;
 use super::identity::Identity;
 use super::notes::Notes;
 use super::plan::RunPlan;
+use super::reference::FieldReference;
 use super::samples::{Probe, Quantity};
 use super::shares::Shares;
 use super::stop::Stop;
@@ -122,6 +123,7 @@ impl<const D: usize> Launch<D> {
                 .iter()
                 .map(|one| (one.name.to_string(), probe(one, constants.spacing)))
                 .collect(),
+            reference: scene.reference.as_deref().and_then(FieldReference::of),
             resume: options.existing == Existing::Resume,
             keeps_state: checkpoints.is_some() || options.max_wall.is_some(),
             stop,
@@ -276,7 +278,7 @@ fn fingerprint<const D: usize>(
     format!("{D}-D {model:?} {features:?} particles {digest}")
 }
 
-fn probe<const D: usize>(probe: &scene::Probe, spacing: f64) -> Probe<D> {
+pub(super) fn probe<const D: usize>(probe: &scene::Probe, spacing: f64) -> Probe<D> {
     // The scene has checked that what a kind needs is there and fits the dimension.
     let array = |numbers: Option<&At<Vec<f64>>>| numbers.map(|numbers| scene::vector(numbers));
     let at: [f64; D] = array(probe.at.as_ref()).unwrap_or([0.0; D]);

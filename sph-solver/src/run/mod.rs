@@ -1,6 +1,7 @@
 //! A run from a scene to its files.
 
 pub mod checkpoints;
+pub mod columns;
 pub mod cpu_time;
 pub mod digest;
 pub mod driver;
@@ -13,6 +14,7 @@ pub mod launch;
 pub mod load_log;
 pub mod notes;
 pub mod plan;
+pub mod reference;
 pub mod samples;
 pub mod schedule;
 pub mod shares;

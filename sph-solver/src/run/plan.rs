@@ -2,6 +2,7 @@
 
 use super::identity::Identity;
 use super::notes::Notes;
+use super::reference::FieldReference;
 use super::samples::Probe;
 use super::stop::Stop;
 use std::path::PathBuf;
@@ -27,6 +28,8 @@ pub struct RunPlan<const D: usize> {
     pub checkpoints: Option<f64>,
     /// Named probes.
     pub probes: Vec<(String, Probe<D>)>,
+    /// Fields to compare the fluid with.
+    pub reference: Option<FieldReference>,
     /// Whether to continue from the latest checkpoint in `out`.
     pub resume: bool,
     /// Whether a checkpoint must be possible in every step, at the price of a second copy of the

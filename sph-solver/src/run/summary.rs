@@ -58,6 +58,9 @@ pub struct Summary {
     pub wall_seconds: f64,
     /// CPU seconds of all threads of all ranks since the program began, where the system tells.
     pub cpu_seconds: Option<f64>,
+    /// CPU seconds of all threads of all ranks in the steps of this process, output included: what the
+    /// result cost. Where the system tells, in units of 0.01 s.
+    pub core_seconds: Option<f64>,
     /// Seconds by phase, of the rank that spent most on it.
     pub phases: Phases,
     /// Fluid particles times steps per second, over all ranks.
@@ -108,6 +111,8 @@ pub struct Summary {
     pub momentum: Vec<f64>,
     /// Largest |ρ/ρ0 − 1| at the end.
     pub compression: f64,
+    /// Largest speed of the fluid divided by the sound speed since this process began, and when.
+    pub largest_mach: Mach,
     /// Particles taken out because they left the domain.
     pub lost_particles: u64,
     /// Loads on the solids over the whole run.
@@ -120,6 +125,15 @@ pub struct Summary {
     pub notes: Vec<String>,
     /// Hash of the final state ordered by id: equal digests mean equal bits.
     pub state_digest: String,
+}
+
+/// A Mach number at a time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Mach {
+    /// Speed divided by sound speed.
+    pub number: f64,
+    /// When, s.
+    pub time: f64,
 }
 
 /// Particles by kind.
@@ -217,12 +231,17 @@ pub fn summarize<const D: usize, S: Real + Pod>(
     let rows: Vec<[u64; 3]> =
         rows.iter().filter_map(|bytes| bytemuck::try_pod_read_unaligned(bytes).ok()).collect();
 
-    let mine = if meta.one_process && comm.rank() > 0 { Some(0.0) } else { cpu_seconds() };
-    let all = comm.all_gather(&mine.unwrap_or(f64::NAN).to_ne_bytes())?;
-    let cpu: f64 = all
-        .iter()
-        .filter_map(|bytes| bytes.as_slice().try_into().ok().map(f64::from_ne_bytes))
-        .sum();
+    // The threads of a process share one count.
+    let once = !meta.one_process || comm.rank() == 0;
+    let of_all = |mine: Option<f64>| -> Result<Option<f64>, RunError> {
+        let mine = if once { mine } else { Some(0.0) };
+        let all = comm.all_gather(&mine.unwrap_or(f64::NAN).to_ne_bytes())?;
+        let numbers = all.iter().filter_map(|bytes| bytes.as_slice().try_into().ok());
+        let sum: f64 = numbers.map(f64::from_ne_bytes).sum();
+        Ok(sum.is_finite().then_some(sum))
+    };
+    let cpu_seconds = of_all(cpu_seconds())?;
+    let core_seconds = of_all(finished.cpu_seconds)?;
 
     let loop_seconds = rebuild + density + force;
     let (first, last) = &finished.budgets;
@@ -240,7 +259,8 @@ pub fn summarize<const D: usize, S: Real + Pod>(
         simulated_time: finished.last.time,
         time_step: finished.time_step,
         wall_seconds,
-        cpu_seconds: cpu.is_finite().then_some(cpu),
+        cpu_seconds,
+        core_seconds,
         phases: Phases { rebuild, density, force, output },
         particle_updates_per_second: updates / loop_seconds,
         pair_interactions: counts[3],
@@ -264,6 +284,10 @@ pub fn summarize<const D: usize, S: Real + Pod>(
         energies: Energies { start: Energy::of(first), end: Energy::of(last) },
         momentum: last.momentum.to_vec(),
         compression: last.compression,
+        largest_mach: Mach {
+            number: finished.fastest.0 / simulation.model().limits.sound_speed,
+            time: finished.fastest.1,
+        },
         lost_particles: finished.lost,
         solids: finished.loads.iter().map(|(name, load)| SolidLoad::of::<D>(name, load)).collect(),
         snapshots: finished.snapshots,

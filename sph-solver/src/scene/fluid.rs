@@ -25,6 +25,12 @@ pub struct Fluid {
     /// Where the fluid is at the start. A point in several regions belongs to the first of them.
     #[schemars(extend("minItems" = 1))]
     pub regions: At<Vec<At<Region>>>,
+    /// Largest random shift of the initial positions along each axis, divided by the spacing: so that
+    /// results do not hang on a perfect lattice. 0 when absent. For scenes without walls.
+    #[schemars(extend("minimum" = 0, "maximum" = 0.4))]
+    pub jitter: Option<At<f64>>,
+    /// Number that chooses the random shifts. 1 when absent.
+    pub seed: Option<At<u64>>,
     /// Initial velocity, m/s: one formula in x, y, z per component. At rest when absent.
     pub velocity: Option<At<Vec<At<Formula>>>>,
     /// Initial pressure, Pa: a formula in x, y, z, or "hydrostatic" for the weight of the fluid

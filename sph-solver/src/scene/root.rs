@@ -11,6 +11,7 @@ use super::output::Output;
 use super::overrides;
 use super::probe::{Axis, Probe};
 use super::reader;
+use super::reference::{Reference, StudyKeys};
 use super::solid::Solid;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -52,6 +53,11 @@ pub struct Scene {
     /// What is written how often.
     #[serde(default)]
     pub output: Output,
+    /// What is known about the flow, and how the error of a run is measured by it.
+    pub reference: Option<At<Reference>>,
+    /// What `sph study` varies.
+    #[serde(default)]
+    pub study: StudyKeys,
     /// The texts that the scene was read from.
     #[serde(skip)]
     sources: Sources,

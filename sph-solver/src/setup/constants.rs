@@ -3,6 +3,7 @@
 use crate::eos::EquationOfState;
 use crate::lio::Extremes;
 use crate::scene::{ErrorKind, Numerics, OnLost, Scene, SceneError, SoundSpeed};
+use crate::stability::largest_courant;
 use crate::timestep::StepLimits;
 use serde::Serialize;
 
@@ -25,7 +26,7 @@ pub struct Constants<const D: usize> {
     pub equation_of_state: EquationOfState,
     /// Gravity, m/s².
     pub gravity: [f64; D],
-    /// Courant number.
+    /// Courant number that the scene asks for.
     pub cfl: f64,
     /// Artificial viscosity α; 0 for none.
     pub artificial_viscosity: f64,
@@ -46,10 +47,16 @@ pub struct Constants<const D: usize> {
 }
 
 impl<const D: usize> Constants<D> {
+    /// The Courant number of the steps: that of the scene, or the largest that its density diffusion and
+    /// viscosity bear.
+    pub fn courant(&self) -> f64 {
+        self.cfl.min(largest_courant(self.density_diffusion, self.artificial_viscosity))
+    }
+
     /// Limits of the time step.
     pub fn step_limits(&self) -> StepLimits {
         StepLimits {
-            cfl: self.cfl,
+            cfl: self.courant(),
             smoothing_length: self.smoothing_length,
             sound_speed: self.sound_speed,
             kinematic_viscosity: self.viscosity.unwrap_or(0.0) / self.density0,
@@ -154,6 +161,8 @@ mod tests {
         assert_eq!((step, limit), (0.03 / 30.0, StepLimit::Sound));
         let heavy = Constants { gravity: [0.0, -1e4], ..constants() };
         assert_eq!(time_step(&heavy, 0.0), (0.25 * (0.03f64 / 1e4).sqrt(), StepLimit::Forces));
+        let smooth = Constants { density_diffusion: 0.5, ..constants() };
+        assert_eq!(time_step(&smooth, 0.0), (0.4 * 0.03 / 30.0, StepLimit::Sound));
         let syrup = Constants { viscosity: Some(1e3), ..constants() };
         assert_eq!(time_step(&syrup, 0.0), (0.125 * 0.03 * 0.03, StepLimit::Viscosity));
     }

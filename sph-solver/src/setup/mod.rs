@@ -10,6 +10,7 @@ mod domain;
 mod estimate;
 mod fluid;
 mod geometry;
+mod jitter;
 mod memory;
 mod neighbours;
 mod notes;
@@ -80,6 +81,7 @@ impl<const D: usize> Setup<D> {
         if position.is_empty() {
             return Err(nothing(scene, fluid));
         }
+        let position = jitter::shifted(fluid, spacing, position);
         let filling = Filling::new(scene, fluid, position, ends)?;
         domain::check(scene, fluid, &domain, &filling.position)?;
         let support = Geometry::<D>::support(scene);

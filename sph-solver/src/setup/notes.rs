@@ -30,6 +30,14 @@ impl<const D: usize> Setup<D> {
                  fluid is visibly compressible"
             ));
         }
+        let (asked, courant) = (self.constants.cfl, self.constants.courant());
+        if courant < asked {
+            notes.push(format!(
+                "steps have the Courant number {courant:.3} instead of {asked}: a density diffusion of \
+                 {} with an artificial viscosity of {} is noisy or unstable beyond",
+                self.constants.density_diffusion, self.constants.artificial_viscosity,
+            ));
+        }
         notes.extend(self.note_on_volume());
         let needed = self.memory_bytes();
         if let Some(free) = memory::available().filter(|available| needed > *available) {

@@ -2,6 +2,7 @@
 
 mod outputs;
 mod periodic;
+mod reference;
 mod shapes;
 mod values;
 
@@ -49,7 +50,8 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
         walls(&values, index, solid)?;
     }
     outputs::probes(&values)?;
-    outputs::intervals(&values)
+    outputs::intervals(&values)?;
+    scene.reference.as_ref().map_or(Ok(()), |known| reference::check(&values, known))
 }
 
 /// The largest Courant number that is accepted; leapfrog is stable up to 1.72 c0 dt/h (δ = 0.1,
@@ -146,11 +148,31 @@ fn fluid(values: &Values<'_>, name: &str, fluid: &At<Fluid>) -> Result<(), Scene
         };
         return Err(values.scene.error(fluid.regions.place, kind));
     }
+    jitter(values, &path, fluid)?;
     fields(values, &path, fluid.velocity.as_ref(), Some(&fluid.pressure))?;
     for (index, region) in fluid.regions.iter().enumerate() {
         let path = format!("{path}.regions.{index}");
         shapes::one_of(values, &path, region.place, &region.shapes())?;
         fields(values, &path, region.velocity.as_ref(), region.pressure.as_ref())?;
+    }
+    Ok(())
+}
+
+fn jitter(values: &Values<'_>, path: &str, fluid: &Fluid) -> Result<(), SceneError> {
+    let Some(jitter) = &fluid.jitter else { return Ok(()) };
+    values.within(
+        &format!("{path}.jitter"),
+        jitter,
+        0.0..=0.4,
+        "between 0 and 0.4",
+        "the largest shift along each axis divided by the spacing; 0.1 suits most studies",
+    )?;
+    if **jitter > 0.0 && !values.scene.solid.is_empty() {
+        return Err(values.invalid(
+            jitter.place,
+            format!("`{path}.jitter` would push particles into the walls"),
+            "leave it out: runs with walls begin on the lattice",
+        ));
     }
     Ok(())
 }

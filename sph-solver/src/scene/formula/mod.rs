@@ -8,6 +8,7 @@
 //! would turn a Gaussian pulse into an explosion without a word.
 
 mod parse;
+mod timed;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Visitor};
@@ -16,6 +17,7 @@ use std::borrow::Cow;
 use std::f64::consts::{E, PI};
 
 pub use parse::FormulaError;
+pub use timed::TimedFormula;
 
 /// A formula in the coordinates x, y, z (m).
 #[derive(Debug, Clone)]
@@ -29,6 +31,12 @@ pub struct Formula {
 struct Program {
     steps: Vec<Step>,
     depth: usize,
+}
+
+impl Program {
+    fn uses(&self, variable: usize) -> bool {
+        self.steps.iter().any(|step| matches!(step, Step::Variable(used) if *used == variable))
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -78,7 +86,12 @@ const BINARY: [NamedBinary; 3] = [("min", f64::min), ("max", f64::max), ("atan2"
 impl Formula {
     /// Reads a formula. Mistakes show in [`check`](Self::check).
     pub fn new(text: &str) -> Self {
-        Self { text: text.into(), parsed: parse::parse(text) }
+        Self::of(text, &VARIABLES)
+    }
+
+    /// A formula in variables with these names.
+    fn of(text: &str, variables: &[&'static str]) -> Self {
+        Self { text: text.into(), parsed: parse::parse(text, variables) }
     }
 
     /// The text.
@@ -89,10 +102,7 @@ impl Formula {
     /// What is wrong with the formula in a scene of so many dimensions, if anything.
     pub fn check(&self, dimension: usize) -> Result<(), FormulaError> {
         let program = self.parsed.as_ref().map_err(Clone::clone)?;
-        let uses = |axis| {
-            program.steps.iter().any(|step| matches!(step, Step::Variable(used) if *used == axis))
-        };
-        if dimension < 3 && uses(2) {
+        if dimension < 3 && program.uses(2) {
             return Err(FormulaError {
                 reason: "it uses z, but the scene has dimension = 2".into(),
                 help: "use x and y".into(),
@@ -108,12 +118,17 @@ impl Formula {
 
     /// The value at a point. NaN where the formula is undefined or could not be read.
     pub fn at<const D: usize>(&self, x: &[f64; D]) -> f64 {
+        self.evaluate(x)
+    }
+
+    /// The value for these values of the variables.
+    fn evaluate(&self, variables: &[f64]) -> f64 {
         let Ok(program) = &self.parsed else { return f64::NAN };
         let mut stack = Vec::with_capacity(program.depth);
         for step in &program.steps {
             let value = match *step {
                 Step::Number(number) => Some(number),
-                Step::Variable(axis) => x.get(axis).copied(),
+                Step::Variable(number) => variables.get(number).copied(),
                 Step::Unary(f) => stack.pop().map(f),
                 Step::Binary(f) => {
                     let right = stack.pop();
@@ -179,8 +194,7 @@ impl JsonSchema for Formula {
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        let functions = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0));
-        let functions = functions.collect::<Vec<_>>().join(", ");
+        let functions = functions();
         json_schema!({
             "description": format!(
                 "A formula in x, y, z (m) with + - * / ^, parentheses, pi, e and {functions}"
@@ -188,6 +202,12 @@ impl JsonSchema for Formula {
             "type": ["string", "number"],
         })
     }
+}
+
+/// Names of all functions, for descriptions.
+fn functions() -> String {
+    let names = UNARY.iter().map(|f| f.0).chain(BINARY.iter().map(|f| f.0));
+    names.collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

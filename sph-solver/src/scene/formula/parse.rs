@@ -9,7 +9,7 @@
 //! ```
 
 use super::super::suggest;
-use super::{BINARY, CONSTANTS, Program, Step, UNARY, VARIABLES};
+use super::{BINARY, CONSTANTS, Program, Step, UNARY};
 
 /// Why a formula cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -24,8 +24,10 @@ pub struct FormulaError {
 /// Parentheses and exponents within each other; more would exhaust the call stack.
 const DEEPEST: usize = 100;
 
-pub(super) fn parse(text: &str) -> Result<Program, FormulaError> {
-    let mut parser = Parser { text, at: 0, nesting: 0, waiting: 0, program: Program::default() };
+/// Reads a formula in variables with these names.
+pub(super) fn parse(text: &str, variables: &[&'static str]) -> Result<Program, FormulaError> {
+    let program = Program::default();
+    let mut parser = Parser { text, variables, at: 0, nesting: 0, waiting: 0, program };
     if parser.peek().is_none() {
         return Err(error("it is empty", "write 0 for nothing"));
     }
@@ -39,6 +41,8 @@ pub(super) fn parse(text: &str) -> Result<Program, FormulaError> {
 
 struct Parser<'a> {
     text: &'a str,
+    /// Names of the variables.
+    variables: &'a [&'static str],
     /// Next byte.
     at: usize,
     nesting: usize,
@@ -238,7 +242,7 @@ impl<'a> Parser<'a> {
                 return Err(error(reason, "write atan2(y, x)"));
             }
             Ok(())
-        } else if let Some(axis) = VARIABLES.iter().position(|known| *known == name) {
+        } else if let Some(axis) = self.variables.iter().position(|known| *known == name) {
             self.emit(Step::Variable(axis));
             Ok(())
         } else if let Some((_, number)) = CONSTANTS.iter().find(|(known, _)| *known == name) {
@@ -278,7 +282,8 @@ impl<'a> Parser<'a> {
             error(format!("unknown function `{name}`"), help)
         } else {
             let constants = CONSTANTS.iter().map(|constant| constant.0);
-            let valid: Vec<_> = VARIABLES.into_iter().chain(constants).map(String::from).collect();
+            let variables = self.variables.iter().copied();
+            let valid: Vec<_> = variables.chain(constants).map(String::from).collect();
             let help = suggest::help(name, &valid, "variables and constants");
             error(format!("unknown name `{name}`"), help)
         }
