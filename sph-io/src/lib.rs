@@ -10,6 +10,7 @@ mod pvd;
 mod series;
 mod table;
 mod vtu;
+mod vtu_read;
 
 pub use atomic::{remove_stale_temporaries, write_atomically, write_text_atomically};
 pub use checkpoint::{
@@ -24,3 +25,4 @@ pub use pvd::{PvdEntry, PvdIndex};
 pub use series::SnapshotSeries;
 pub use table::{Table, TableWriter, read_table};
 pub use vtu::write_vtu;
+pub use vtu_read::{Snapshot, SnapshotColumn, read_vtu};

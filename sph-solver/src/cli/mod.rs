@@ -11,6 +11,7 @@ mod check;
 mod diagnostics;
 mod partition;
 mod progress;
+mod report;
 mod run;
 
 use crate::scene::{Scene, SceneError};
@@ -43,6 +44,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Divide a scene among many ranks without running it, and predict the time of a step
     Partition(partition::PartitionArguments),
+    /// Make a page of pictures, curves and figures out of the results of runs
+    Report(report::ReportArguments),
 }
 
 /// Which scene.
@@ -67,6 +70,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
         Command::Partition(arguments) => partition::main(&arguments),
+        Command::Report(arguments) => report::main(&arguments),
     }
 }
 

@@ -5,7 +5,7 @@ use super::{
     BAD_INPUT, FAILED, STOPPED, SceneArguments, count, diagnostics, duration, seconds, threads,
 };
 use crate::error::RunError;
-use crate::run::{Existing, Notes, RunOptions, Stop, Summary, World, run};
+use crate::run::{Existing, Notes, RunOptions, Stop, Summary, World, run, shell_line};
 use crate::scene::{ErrorKind, SceneError, Sources};
 use clap::Args;
 use std::io::Write;
@@ -68,6 +68,7 @@ impl RunArguments {
             max_wall: self.max_wall,
             stop: Stop::default(),
             notes: Notes::default(),
+            command: None,
         }
     }
 }
@@ -130,7 +131,8 @@ fn simulate(world: &World, arguments: &RunArguments) -> Result<(), RunError> {
         let progress = progress.clone();
         Notes::told_to(move |note| progress.above(|| diagnostics::show_note(note)))
     };
-    let options = RunOptions { stop, notes, ..arguments.options() };
+    let command = Some(command(world));
+    let options = RunOptions { stop, notes, command, ..arguments.options() };
     let result = run(world, &scene, &options, &|status| progress.show(status));
     progress.finish();
     let summary = result?;
@@ -146,6 +148,16 @@ fn simulate(world: &World, arguments: &RunArguments) -> Result<(), RunError> {
         }
     }
     Ok(())
+}
+
+/// The command that started this run.
+fn command(world: &World) -> String {
+    let arguments = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+    let launcher = match world.size() {
+        1 => String::new(),
+        size => format!("mpirun -n {size} "),
+    };
+    launcher + &shell_line(std::iter::once("sph".to_owned()).chain(arguments))
 }
 
 fn closing_words(summary: &Summary, options: &RunOptions) -> String {
@@ -170,5 +182,7 @@ fn closing_words(summary: &Summary, options: &RunOptions) -> String {
         let lost = summary.lost_particles;
         text += &format!("\n{lost} particle(s) left the domain and were removed: see lost.csv");
     }
-    text + &format!("\nresults in {}", options.out.display())
+    let out = options.out.display().to_string();
+    let report = shell_line(["sph", "report", &out]);
+    text + &format!("\nresults in {out}\nas a page with pictures and curves: {report}")
 }

@@ -7,6 +7,7 @@ use super::gauges::patch;
 use super::identity::Identity;
 use super::notes::Notes;
 use super::plan::RunPlan;
+use super::record::Record;
 use super::samples::{Probe, Quantity};
 use super::shares::Shares;
 use super::stop::Stop;
@@ -46,6 +47,8 @@ pub struct RunOptions {
     pub stop: Stop,
     /// Where remarks about the run go.
     pub notes: Notes,
+    /// The command that asked for the run, for its record.
+    pub command: Option<String>,
 }
 
 /// Runs a scene and returns its summary, the same on all processes. `watch` is called after each
@@ -79,6 +82,8 @@ fn run_in<const D: usize>(
     if let Some(note) = folder.as_ref().and_then(RunFolder::note) {
         options.notes.add(note);
     }
+    let record = Record::new(scene, launch.plan.end_time, options.command.as_deref());
+    world.once(|| record.write(&options.out, options.existing == Existing::Resume))?;
     launch.notes.iter().for_each(|note| options.notes.add(note.as_str()));
     launch.run(world, watch)
 }

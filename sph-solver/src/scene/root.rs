@@ -117,6 +117,11 @@ impl Scene {
         self.sources.get(Place::default()).map_or("", |source| &source.text)
     }
 
+    /// The scene file as the user named it.
+    pub fn file_name(&self) -> &str {
+        self.sources.get(Place::default()).map_or("", |source| &source.name)
+    }
+
     /// The `--set` arguments in order.
     pub fn overrides(&self) -> impl Iterator<Item = &str> {
         self.sources.arguments()
