@@ -214,6 +214,7 @@ fn no_file_but_those_of_the_run() {
         "energies.csv",
         "lost.csv",
         "probe-P1.csv",
+        "run.json",
         "small-000000.vtu",
         "small-000001.vtu",
         "small-000002.vtu",

@@ -9,6 +9,7 @@
 
 mod check;
 mod diagnostics;
+mod new;
 mod partition;
 mod progress;
 mod report;
@@ -38,6 +39,8 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Write a commented scene to start from
+    New(new::NewArguments),
     /// Simulate a scene and write snapshots, tables and summary.json
     Run(run::RunArguments),
     /// Read a scene and everything it names, and report counts, time step, memory and cost
@@ -67,6 +70,7 @@ impl SceneArguments {
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
     match Arguments::parse().command {
+        Command::New(arguments) => new::main(&arguments),
         Command::Run(arguments) => run::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
         Command::Partition(arguments) => partition::main(&arguments),

@@ -23,6 +23,18 @@ pub fn plots(runs: &[Results]) -> Vec<Plot> {
     names.into_iter().flat_map(|(_, name)| of_table(runs, name)).collect()
 }
 
+/// Probes that met no fluid, so that they have no curve: name and run.
+pub fn dry_probes(runs: &[Results]) -> Vec<(&str, &Results)> {
+    let of_run = |run| {
+        let Results { tables, .. } = run;
+        tables.iter().filter_map(move |(name, table)| {
+            let probe = name.strip_prefix("probe-")?;
+            (!table.rows.is_empty() && groups(name, table).is_empty()).then_some((probe, run))
+        })
+    };
+    runs.iter().flat_map(of_run).collect()
+}
+
 /// Loads come first, energies last.
 fn rank(name: &str) -> u8 {
     match name {

@@ -56,8 +56,8 @@ pub fn figure(
             }
         }
     }
-    // Disks of the plane meet at the corners of their cells.
-    let radius = if view.flat { 0.72 } else { 0.56 };
+    // Disks of the plane reach beyond the corners of their cells, so that the fluid has no holes.
+    let radius = if view.flat { 0.8 } else { 0.56 };
     for (point, value) in fluid.positions.iter().zip(values) {
         if seen.contains(point) {
             picture.particle(point, radius * spacing, (value - low) / (high - low));
@@ -113,7 +113,7 @@ impl<'a> Placing<'a> {
     fn flat_axes(&self, svg: &mut String) -> std::fmt::Result {
         let Extent { min, max } = self.extent;
         let (width, height) = self.size();
-        let (bottom, room) = (TOP + height, |length: f64| (length / 60.0).clamp(2.0, 6.0) as usize);
+        let (bottom, room) = (TOP + height, |length: f64| (length / 45.0).clamp(2.0, 6.0) as usize);
         writeln!(
             svg,
             "<path class=\"axis\" d=\"M{LEFT} {TOP}h{width:.1}v{height:.1}h-{width:.1}z\"/>"

@@ -71,6 +71,10 @@ pub fn page(runs: &[Results], scans: &[Scan], problems: &[String], budget: Budge
             );
         }
     }
+    for (probe, run) in curves::dry_probes(runs) {
+        let of = if runs.len() > 1 { format!(" in {}", run.label) } else { String::new() };
+        html += &format!("<p>{}.</p>\n", escape(&format!("Probe {probe} met no fluid{of}")));
+    }
     let (phases, parts) = (facts::phases(runs), facts::parts(runs));
     if !phases.is_empty() {
         html += &format!("<h2>Where the time went</h2>\n{phases}");
@@ -134,6 +138,8 @@ fn origin(runs: &[Results], most: usize) -> String {
     }
     // Runs of one scene with other settings are common.
     let mut shown: Vec<&str> = Vec::new();
+    let changed = runs.iter().any(|run| !run.record.overrides.is_empty());
+    let before = if changed { ", before the changes by <code>--set</code>" } else { "" };
     for run in runs {
         let scene = run.record.scene.as_str();
         if scene.is_empty() || shown.contains(&scene) {
@@ -145,7 +151,7 @@ fn origin(runs: &[Results], most: usize) -> String {
         let of =
             if same > 1 { format!(", the scene of {same} of these runs") } else { String::new() };
         html += &format!(
-            "<h2>Scene</h2>\n<p><code>{file}</code>{of}, before the changes by <code>--set</code>:\
+            "<h2>Scene</h2>\n<p><code>{file}</code>{of}{before}:\
              </p>\n<pre>{}</pre>\n",
             escape(&shorten(scene, most))
         );

@@ -133,7 +133,7 @@ struct Axis {
 impl Axis {
     fn of_time(lines: &[Line]) -> Self {
         let (low, high) = range(lines.iter().flat_map(|line| &line.time));
-        Self { low, high, ticks: Ticks::new(low, high, 6) }
+        Self { low, high, ticks: Ticks::new(low, high, 7) }
     }
 
     fn of_values(lines: &[Line]) -> Self {

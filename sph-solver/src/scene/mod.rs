@@ -24,6 +24,7 @@ mod schema;
 mod shape;
 mod solid;
 mod suggest;
+mod template;
 #[cfg(test)]
 mod tests;
 
@@ -42,3 +43,4 @@ pub use schema::json_schema;
 pub use shape::{AxisKeys, BoxKeys, PlaneKeys, Shape, ShapeKeys, SphereKeys};
 pub use solid::{FluidSide, Solid, WallFriction};
 pub(crate) use suggest::nearest;
+pub use template::Template;
