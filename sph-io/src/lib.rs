@@ -20,7 +20,7 @@ pub use checkpoint::{
 };
 pub use column::{Column, Element, Number, Scalar, Values};
 pub use error::IoError;
-pub use frame::ParticleFrame;
+pub use frame::{Compression, ParticleFrame};
 pub use pvd::{PvdEntry, PvdIndex};
 pub use series::SnapshotSeries;
 pub use table::{Table, TableWriter, read_table};

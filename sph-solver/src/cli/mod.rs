@@ -9,11 +9,13 @@
 
 mod check;
 mod diagnostics;
+mod log;
 mod new;
 mod partition;
 mod progress;
 mod report;
 mod run;
+mod shell;
 
 use crate::scene::{Scene, SceneError};
 use clap::{Args, Parser, Subcommand};
@@ -49,6 +51,10 @@ enum Command {
     Partition(partition::PartitionArguments),
     /// Make a page of pictures, curves and figures out of the results of runs
     Report(report::ReportArguments),
+    /// Write a completion script for a shell on standard output
+    Completions(shell::CompletionsArguments),
+    /// Write manual pages
+    Man(shell::ManArguments),
 }
 
 /// Which scene.
@@ -59,11 +65,18 @@ struct SceneArguments {
     /// Change a value of the scene, for example --set numerics.spacing=0.01
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
+    /// Let the scene name files outside of its folder
+    #[arg(long)]
+    allow_paths: bool,
 }
 
 impl SceneArguments {
     fn read(&self) -> Result<Scene, SceneError> {
-        Scene::read(&self.scene, &self.overrides)
+        let scene = Scene::read(&self.scene, &self.overrides)?;
+        if !self.allow_paths {
+            scene.check_paths()?;
+        }
+        Ok(scene)
     }
 }
 
@@ -75,6 +88,8 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::main(&arguments),
         Command::Partition(arguments) => partition::main(&arguments),
         Command::Report(arguments) => report::main(&arguments),
+        Command::Completions(arguments) => shell::completions(&arguments),
+        Command::Man(arguments) => shell::man(&arguments),
     }
 }
 

@@ -24,10 +24,9 @@ pub fn plots(runs: &[Results]) -> Vec<Plot> {
 }
 
 /// Probes that met no fluid, so that they have no curve: name and run.
-pub fn dry_probes(runs: &[Results]) -> Vec<(&str, &Results)> {
-    let of_run = |run| {
-        let Results { tables, .. } = run;
-        tables.iter().filter_map(move |(name, table)| {
+pub fn dry_probes<'a>(runs: &'a [Results]) -> Vec<(&'a str, &'a Results)> {
+    let of_run = |run: &'a Results| {
+        run.tables.iter().filter_map(move |(name, table)| {
             let probe = name.strip_prefix("probe-")?;
             (!table.rows.is_empty() && groups(name, table).is_empty()).then_some((probe, run))
         })

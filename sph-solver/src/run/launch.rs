@@ -10,6 +10,7 @@ use super::plan::RunPlan;
 use super::record::Record;
 use super::samples::{Probe, Quantity};
 use super::shares::Shares;
+use super::snapshot_choice::SnapshotChoice;
 use super::stop::Stop;
 use super::summary::{Meta, Summary};
 use super::table::{Features, Job, Precision, Viscosity, run_job};
@@ -120,6 +121,7 @@ impl<const D: usize> Launch<D> {
             out: options.out.clone(),
             end_time,
             snapshots: output.snapshots.as_deref().copied(),
+            snapshot_choice: SnapshotChoice::new(output),
             samples: output.energies.as_deref().copied(),
             checkpoints,
             probes: scene

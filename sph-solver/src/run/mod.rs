@@ -17,6 +17,7 @@ pub mod record;
 pub mod samples;
 pub mod schedule;
 pub mod shares;
+pub mod snapshot_choice;
 pub mod stop;
 pub mod summary;
 pub mod table;

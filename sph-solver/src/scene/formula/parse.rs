@@ -23,8 +23,14 @@ pub struct FormulaError {
 
 /// Parentheses and exponents within each other; more would exhaust the call stack.
 const DEEPEST: usize = 100;
+/// Bytes of a formula: it is evaluated once per particle.
+const LONGEST: usize = 4096;
 
 pub(super) fn parse(text: &str) -> Result<Program, FormulaError> {
+    if text.len() > LONGEST {
+        let reason = format!("it has {} characters, more than {LONGEST}", text.chars().count());
+        return Err(error(reason, "simplify it, or divide the region into several"));
+    }
     let mut parser = Parser { text, at: 0, nesting: 0, waiting: 0, program: Program::default() };
     if parser.peek().is_none() {
         return Err(error("it is empty", "write 0 for nothing"));
