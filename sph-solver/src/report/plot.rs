@@ -217,41 +217,58 @@ fn thinned(
     }
     let bin = |t: f64| (((t - start) / (end - start)) * bins as f64) as usize;
     let mut kept: Vec<Option<(f64, f64)>> = Vec::new();
-    // Lowest and highest point of the present bin.
-    let mut held: Option<(usize, (f64, f64), (f64, f64))> = None;
-    let flush = |held: &mut Option<(usize, (f64, f64), (f64, f64))>, kept: &mut Vec<_>| {
-        if let Some((_, low, high)) = held.take() {
-            let (first, second) = if low.0 <= high.0 { (low, high) } else { (high, low) };
-            kept.push(Some(first));
-            if second != first {
-                kept.push(Some(second));
-            }
-        }
-    };
+    let mut held: Option<Extremes> = None;
     for point in points {
         match point {
             None => {
-                flush(&mut held, &mut kept);
+                kept.extend(held.take().into_iter().flat_map(Extremes::points));
                 if kept.last().is_some_and(Option::is_some) {
                     kept.push(None);
                 }
             }
-            Some((t, v)) => {
-                if held.is_some_and(|(present, ..)| present != bin(t)) {
-                    flush(&mut held, &mut kept);
-                }
-                let (_, low, high) = held.get_or_insert((bin(t), (t, v), (t, v)));
-                if v < low.1 {
-                    *low = (t, v);
-                }
-                if v > high.1 {
-                    *high = (t, v);
+            Some(point) => {
+                let bin = bin(point.0);
+                match &mut held {
+                    Some(held) if held.bin == bin => held.add(point),
+                    _ => {
+                        let next = Extremes { bin, low: point, high: point };
+                        let before = held.replace(next);
+                        kept.extend(before.into_iter().flat_map(Extremes::points));
+                    }
                 }
             }
         }
     }
-    flush(&mut held, &mut kept);
+    kept.extend(held.into_iter().flat_map(Extremes::points));
     kept
+}
+
+/// The lowest and the highest point of a bin.
+struct Extremes {
+    bin: usize,
+    low: (f64, f64),
+    high: (f64, f64),
+}
+
+impl Extremes {
+    fn add(&mut self, point: (f64, f64)) {
+        if point.1 < self.low.1 {
+            self.low = point;
+        }
+        if point.1 > self.high.1 {
+            self.high = point;
+        }
+    }
+
+    /// Both in the order of time, or one that is both.
+    fn points(self) -> impl Iterator<Item = Option<(f64, f64)>> {
+        let (low, high) = (self.low, self.high);
+        let (first, second) = if low.0 <= high.0 { (low, high) } else { (high, low) };
+        [Some(first), Some(second).filter(|second| *second != first)]
+            .into_iter()
+            .flatten()
+            .map(Some)
+    }
 }
 
 #[cfg(test)]

@@ -21,10 +21,8 @@ impl Extent {
     /// Takes in a point; one that is no place is ignored.
     pub fn add(&mut self, point: &[f64; 3]) {
         if point.iter().all(|x| x.is_finite()) {
-            for axis in 0..3 {
-                self.min[axis] = self.min[axis].min(point[axis]);
-                self.max[axis] = self.max[axis].max(point[axis]);
-            }
+            self.min = std::array::from_fn(|axis| self.min[axis].min(point[axis]));
+            self.max = std::array::from_fn(|axis| self.max[axis].max(point[axis]));
         }
     }
 
