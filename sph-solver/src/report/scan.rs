@@ -32,8 +32,11 @@ impl Field {
 pub struct Scan {
     /// The moments to show, in the order of time.
     pub moments: Vec<PvdEntry>,
-    /// Where the fluid was in them.
+    /// Where nearly all of the fluid was in them.
     pub fluid: Extent,
+    /// Where all of it was, and where in the first of them.
+    all: Extent,
+    first: Extent,
     /// Where the walls are.
     pub walls: Extent,
     /// Samples of each field, sorted.
@@ -56,6 +59,8 @@ impl Scan {
         let mut scan = Self {
             moments: Vec::new(),
             fluid: Extent::EMPTY,
+            all: Extent::EMPTY,
+            first: Extent::EMPTY,
             walls: Extent::EMPTY,
             samples: [Vec::new(), Vec::new()],
             particles: 0,
@@ -85,11 +90,16 @@ impl Scan {
     }
 
     fn add(&mut self, snapshot: &Snapshot) {
+        let stride = snapshot.positions.len() / SAMPLES_PER_MOMENT + 1;
+        let mut all = Extent::EMPTY;
+        snapshot.positions.iter().for_each(|point| all.add(point));
+        self.all.join(&all);
+        self.fluid.join(&bulk(&snapshot.positions, stride));
         if self.particles == 0 {
             self.particles = snapshot.positions.len();
+            self.first = all;
+            self.fluid.join(&all);
         }
-        snapshot.positions.iter().for_each(|point| self.fluid.add(point));
-        let stride = snapshot.positions.len() / SAMPLES_PER_MOMENT + 1;
         for (samples, field) in self.samples.iter_mut().zip(Field::ALL) {
             let values = snapshot.magnitudes(field.column()).unwrap_or_default();
             samples.extend(values.into_iter().step_by(stride).filter(|value| value.is_finite()));
@@ -103,8 +113,17 @@ impl Scan {
 
     /// What pictures show: where the fluid has been, with the walls nearby.
     pub fn extent(&self) -> Extent {
-        let near = self.fluid.grown(3.5 * self.spacing);
-        let near = if self.walls.is_empty() { near } else { near.within(&self.walls) };
+        let room = 3.5 * self.spacing;
+        // Walls around the fluid say what is of interest. In the open, a few drops that fly far away
+        // do not.
+        let enclosed = !self.walls.is_empty()
+            && self.walls.contains(&self.first.min)
+            && self.walls.contains(&self.first.max);
+        let near = if enclosed {
+            self.all.grown(room).within(&self.walls)
+        } else {
+            self.fluid.grown(room)
+        };
         if self.flat {
             let Extent { mut min, mut max } = near;
             (min[2], max[2]) = (0.0, 0.0);
@@ -172,6 +191,22 @@ fn spread(moments: &[PvdEntry], count: usize) -> Vec<&PvdEntry> {
     chosen.into_iter().map(|index| &moments[index]).collect()
 }
 
+/// Where all but a few in a thousand of the particles are, along each axis.
+fn bulk(positions: &[[f64; 3]], stride: usize) -> Extent {
+    let mut extent = Extent { min: [0.0; 3], max: [0.0; 3] };
+    for axis in 0..3 {
+        let mut places: Vec<f64> =
+            positions.iter().step_by(stride).map(|x| x[axis]).filter(|x| x.is_finite()).collect();
+        places.sort_by(f64::total_cmp);
+        let few = places.len() / 200;
+        let (Some(low), Some(high)) = (places.get(few), places.iter().nth_back(few)) else {
+            return Extent::EMPTY;
+        };
+        (extent.min[axis], extent.max[axis]) = (*low, *high);
+    }
+    extent
+}
+
 /// The distance at which so many particles fill about a box.
 fn guessed_spacing(fluid: &Extent, particles: usize, flat: bool) -> f64 {
     if fluid.is_empty() || particles == 0 {
@@ -189,6 +224,15 @@ mod tests {
 
     fn moments(times: &[f64]) -> Vec<PvdEntry> {
         times.iter().map(|t| PvdEntry { time: *t, part: 0, file: format!("{t}.vtu") }).collect()
+    }
+
+    #[test]
+    fn drops_that_fly_away_do_not_count() {
+        let mut positions: Vec<[f64; 3]> = (0..1000).map(|k| [f64::from(k), 1.0, 2.0]).collect();
+        positions.push([1e6, -1e6, 2.0]);
+        let extent = bulk(&positions, 1);
+        assert_eq!(extent, Extent { min: [5.0, 1.0, 2.0], max: [995.0, 1.0, 2.0] });
+        assert!(bulk(&[], 1).is_empty());
     }
 
     #[test]
