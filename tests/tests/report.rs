@@ -56,7 +56,7 @@ fn a_run_becomes_a_page() {
     }
     let summary = results.summary();
     for words in [
-        "in 10³ Pa",
+        "in Pa",
         "x in m",
         "y in m",
         "Speed in m/s",
