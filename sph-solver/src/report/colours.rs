@@ -42,7 +42,9 @@ pub const DASHES: [&str; 7] = ["", "6 3", "2 2", "8 3 2 3", "1 3", "10 4", "4 2 
 
 /// The colour at a share of a scale, clamped to its ends.
 pub fn at(scale: &Scale, share: f64) -> Rgb {
-    let place = share.clamp(0.0, 1.0) * (scale.len() - 1) as f64;
+    // What is no number is at the low end.
+    let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
+    let place = share * (scale.len() - 1) as f64;
     let low = (place as usize).min(scale.len() - 2);
     let part = place - low as f64;
     std::array::from_fn(|k| {
