@@ -61,6 +61,14 @@ pub enum IoError {
         /// What is wrong and what to do.
         problem: String,
     },
+    /// A snapshot is cut, or no unstructured grid.
+    #[error("cannot read the snapshot {}: {problem}", path.display())]
+    Snapshot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
     /// A row of a table has the wrong number of values.
     #[error("a row of {} has {found} values, its header names {expected}", path.display())]
     RowLength {

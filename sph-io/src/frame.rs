@@ -3,6 +3,17 @@
 use crate::IoError;
 use crate::column::{Column, check_columns};
 
+/// How the arrays of a snapshot are packed. VTK reads all of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Compression {
+    /// Fast.
+    #[default]
+    Lz4,
+    /// Smaller, above all where numbers count up, and slower to write.
+    Zlib,
+}
+
 /// Positions and named columns of the particles at one time.
 ///
 /// Nothing is copied: the frame borrows the caller's arrays until it is written.
@@ -26,13 +37,22 @@ pub struct ParticleFrame<'a, const D: usize> {
     pub(crate) positions: &'a [[f64; D]],
     pub(crate) columns: Vec<(String, Column<'a>)>,
     pub(crate) selection: Option<&'a [u32]>,
+    pub(crate) single_positions: bool,
+    pub(crate) compression: Compression,
 }
 
 impl<'a, const D: usize> ParticleFrame<'a, D> {
     /// A frame of positions in metres at `time` in seconds.
     #[must_use]
     pub fn new(time: f64, positions: &'a [[f64; D]]) -> Self {
-        Self { time, positions, columns: Vec::new(), selection: None }
+        Self {
+            time,
+            positions,
+            columns: Vec::new(),
+            selection: None,
+            single_positions: false,
+            compression: Compression::default(),
+        }
     }
 
     /// Adds a column, one row per particle. Names and lengths are checked when the frame is
@@ -47,6 +67,20 @@ impl<'a, const D: usize> ParticleFrame<'a, D> {
     #[must_use]
     pub fn select(mut self, selection: &'a [u32]) -> Self {
         self.selection = Some(selection);
+        self
+    }
+
+    /// Writes positions in single precision: half the room, seven digits.
+    #[must_use]
+    pub fn with_single_positions(mut self) -> Self {
+        self.single_positions = true;
+        self
+    }
+
+    /// Packs the arrays of a snapshot in this way.
+    #[must_use]
+    pub fn compressed(mut self, compression: Compression) -> Self {
+        self.compression = compression;
         self
     }
 

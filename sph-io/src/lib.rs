@@ -10,6 +10,7 @@ mod pvd;
 mod series;
 mod table;
 mod vtu;
+mod vtu_read;
 
 pub use atomic::{remove_stale_temporaries, write_atomically, write_text_atomically};
 pub use checkpoint::{
@@ -19,8 +20,9 @@ pub use checkpoint::{
 };
 pub use column::{Column, Element, Number, Scalar, Values};
 pub use error::IoError;
-pub use frame::ParticleFrame;
+pub use frame::{Compression, ParticleFrame};
 pub use pvd::{PvdEntry, PvdIndex};
 pub use series::SnapshotSeries;
 pub use table::{Table, TableWriter, read_table};
 pub use vtu::write_vtu;
+pub use vtu_read::{Snapshot, SnapshotColumn, read_vtu};

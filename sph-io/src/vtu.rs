@@ -15,7 +15,7 @@ use vtkio::xml::{Compressor, se};
 
 use crate::atomic::write_atomically;
 use crate::column::{Column, Values};
-use crate::{IoError, ParticleFrame};
+use crate::{Compression, IoError, ParticleFrame};
 
 /// Writes the particles of one moment as a `.vtu` file, whole or not at all.
 ///
@@ -67,7 +67,12 @@ fn encode<const D: usize>(frame: &ParticleFrame<'_, D>) -> Result<String, vtkio:
         .map(|(name, column)| array(name, column.in_space(frame.selection)))
         .collect();
     let positions = Column::from(frame.positions);
-    let points = array("Points", positions.in_space(frame.selection)).data;
+    let points = match array("Points", positions.in_space(frame.selection)).data {
+        IOBuffer::F64(x) if frame.single_positions => {
+            IOBuffer::F32(x.into_iter().map(|x| x as f32).collect())
+        }
+        points => points,
+    };
 
     let cell_verts =
         VertexNumbers::XML { connectivity: (0..n).collect(), offsets: (1..=n).collect() };
@@ -81,8 +86,12 @@ fn encode<const D: usize>(frame: &ParticleFrame<'_, D>) -> Result<String, vtkio:
         data: UnstructuredGridPiece { points, cells, data }.into(),
         file_path: None,
     };
-    // LZ4 has no levels; 0 would turn it off.
-    Ok(se::to_string(&grid.try_into_xml_format(Compressor::LZ4, 1)?)?)
+    let compressor = match frame.compression {
+        Compression::Lz4 => Compressor::LZ4,
+        Compression::Zlib => Compressor::ZLib,
+    };
+    // LZ4 has no levels, and higher ones of zlib find no more; 0 would turn it off.
+    Ok(se::to_string(&grid.try_into_xml_format(compressor, 1)?)?)
 }
 
 /// A column as `vtkio` takes it: owned.

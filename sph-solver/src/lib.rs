@@ -14,6 +14,7 @@ pub mod partition;
 pub mod passes;
 pub mod rank;
 pub mod records;
+pub mod report;
 pub mod run;
 pub mod scene;
 pub mod scheme;

@@ -9,6 +9,7 @@
 #![forbid(unsafe_code)]
 
 mod message;
+mod page;
 mod program;
 mod python;
 mod results;
@@ -22,6 +23,7 @@ mod vtu;
 mod whole;
 
 pub use message::Message;
+pub use page::Page;
 pub use program::{mpi_program, program, skipped};
 pub use python::python_with;
 pub use results::{Results, copy_folder};

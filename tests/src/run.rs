@@ -46,6 +46,17 @@ impl Run {
         Self::command("study", scene).arg("--jobs").arg("1")
     }
 
+    /// `sph report FOLDER ...`.
+    pub fn report<P: AsRef<Path>>(folders: &[P]) -> Self {
+        let (first, rest) = folders.split_first().expect("a folder to report on");
+        rest.iter().fold(Self::command("report", first), |run, folder| run.arg(folder.as_ref()))
+    }
+
+    /// `sph new NAME`.
+    pub fn new_scene(name: impl AsRef<Path>) -> Self {
+        Self::command("new", name)
+    }
+
     fn command(name: &str, scene: impl AsRef<Path>) -> Self {
         Self {
             arguments: vec![name.into(), scene.as_ref().into()],

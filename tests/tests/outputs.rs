@@ -214,6 +214,7 @@ fn no_file_but_those_of_the_run() {
         "energies.csv",
         "lost.csv",
         "probe-P1.csv",
+        "run.json",
         "small-000000.vtu",
         "small-000001.vtu",
         "small-000002.vtu",
@@ -226,6 +227,80 @@ fn no_file_but_those_of_the_run() {
     ];
     assert_eq!(names, expected);
     assert!(results.table("lost").rows.is_empty());
+}
+
+/// Bytes per particle of the last snapshot, with what it holds beside positions.
+fn snapshot_of(changes: &[&str]) -> (f64, sph_tests::Vtu) {
+    let run = SHIPPED[2].run_until(0.3).threads(1).set("output.snapshots=1");
+    let results = Results::of(changes.iter().fold(run, |run, change| run.set(change)));
+    let last = results.series().into_iter().rfind(|entry| entry.part == 0).unwrap();
+    let path = results.path().join(last.file);
+    let (bytes, vtu) = (fs::metadata(&path).unwrap().len() as f64, read_vtu(&path));
+    (bytes / vtu.points as f64, vtu)
+}
+
+#[test]
+fn snapshots_hold_what_the_scene_chooses() {
+    let (all, whole) = snapshot_of(&[]);
+    let choice = "output.fields=[\"velocity\", \"pressure\"]";
+    let small = ["output.positions=f32", "output.compression=zlib", choice];
+    let (few, same) = snapshot_of(&small);
+    assert!(few < 40.0 && few < 0.6 * all, "{few} and {all} bytes per particle");
+    let names: Vec<_> = same.arrays.iter().map(|array| array.name.as_str()).collect();
+    assert_eq!(names, ["Points", "velocity", "pressure"]);
+    assert_eq!(same.array("velocity"), whole.array("velocity"));
+    let single = whole.array("Points").values.iter().map(|x| f64::from(*x as f32));
+    assert!(single.eq(same.array("Points").values.iter().copied()));
+    let region = "output.region={ min = [0.2, 0, 0], max = [0.7, 0.3, 1] }";
+    let (_, part) = snapshot_of(&[region, "output.every_nth=3"]);
+    let chosen = |(id, x): &(&f64, &[f64])| {
+        **id % 3.0 == 0.0 && (0.2..=0.7).contains(&x[0]) && x[1] <= 0.3 && x[2] >= 0.0
+    };
+    let places = whole.array("Points").values.chunks(3);
+    let ids = whole.array("id").values.iter().zip(places).filter(chosen).map(|(id, _)| *id);
+    let ids: Vec<f64> = ids.collect();
+    assert!(ids.len() > 20, "{ids:?}");
+    assert_eq!(part.array("id").values, ids);
+}
+
+#[test]
+fn the_check_predicts_the_room_of_snapshots() {
+    for changes in [
+        &["output.snapshots=0.1"][..],
+        &["output.snapshots=0.05", "output.positions=f32", "output.compression=zlib"],
+    ] {
+        let with = |run: Run| changes.iter().fold(run, |run, change| run.set(change));
+        let scene = with(Run::check(sph_tests::scene(SHIPPED[2].name)).arg("--json"))
+            .set(&format!("numerics.spacing={}", SHIPPED[2].spacing))
+            .set("end_time=0.3");
+        let report: Value = serde_json::from_str(&scene.succeed().output).unwrap();
+        let predicted = number(&report, "/snapshots/bytes");
+        let results = Results::of(with(SHIPPED[2].run_until(0.3).threads(1)));
+        let files = results.files(".vtu").into_iter();
+        let bytes: f64 = files.map(|path| fs::metadata(path).unwrap().len() as f64).sum();
+        // What still lies on the lattice packs better than what flows.
+        assert!((0.9..2.5).contains(&(predicted / bytes)), "{predicted} for {bytes}: {changes:?}");
+    }
+}
+
+#[test]
+fn a_log_is_for_batch_jobs() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, log) = (write_scene(folder.path(), SMALL), folder.path().join("run.log"));
+    let results = Results::of(Run::new(&scene).threads(1).arg("--log").arg(&log));
+    let first = fs::read_to_string(&log).unwrap();
+    let time = |line: &str| {
+        let (stamp, _) = line.split_once(' ').unwrap();
+        stamp.len() == 20 && stamp.ends_with('Z') && &stamp[10..11] == "T"
+    };
+    assert!(first.lines().all(time), "{first}");
+    assert!(first.chars().all(|c| c == '\n' || !c.is_control()), "{first}");
+    for words in ["begin: sph run ", "note: ", ", step 1, ", "end: results in "] {
+        assert!(first.contains(words), "\"{words}\" is not in\n{first}");
+    }
+    Run::new(&scene).out(results.path()).arg("--log").arg(&log).fail(2);
+    let second = fs::read_to_string(&log).unwrap();
+    assert!(second.starts_with(&first) && second.contains("end: "), "{second}");
 }
 
 /// Two runs into one folder: nothing of the first is left in the series and the tables.

@@ -9,10 +9,14 @@
 
 mod check;
 mod diagnostics;
+mod log;
+mod new;
 mod partition;
 mod progress;
+mod report;
 mod run;
 mod study;
+mod shell;
 
 use crate::scene::{Scene, SceneError};
 use clap::{Args, Parser, Subcommand};
@@ -38,6 +42,8 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Write a commented scene to start from
+    New(new::NewArguments),
     /// Simulate a scene and write snapshots, tables and summary.json
     Run(run::RunArguments),
     /// Read a scene and everything it names, and report counts, time step, memory and cost
@@ -46,6 +52,12 @@ enum Command {
     Partition(partition::PartitionArguments),
     /// Run scenes over spacings, schemes and seeds, and report their errors against their cost
     Study(study::StudyArguments),
+    /// Make a page of pictures, curves and figures out of the results of runs
+    Report(report::ReportArguments),
+    /// Write a completion script for a shell on standard output
+    Completions(shell::CompletionsArguments),
+    /// Write manual pages
+    Man(shell::ManArguments),
 }
 
 /// Which scene.
@@ -56,21 +68,32 @@ struct SceneArguments {
     /// Change a value of the scene, for example --set numerics.spacing=0.01
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
+    /// Let the scene name files outside of its folder
+    #[arg(long)]
+    allow_paths: bool,
 }
 
 impl SceneArguments {
     fn read(&self) -> Result<Scene, SceneError> {
-        Scene::read(&self.scene, &self.overrides)
+        let scene = Scene::read(&self.scene, &self.overrides)?;
+        if !self.allow_paths {
+            scene.check_paths()?;
+        }
+        Ok(scene)
     }
 }
 
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
     match Arguments::parse().command {
+        Command::New(arguments) => new::main(&arguments),
         Command::Run(arguments) => run::main(&arguments),
         Command::Check(arguments) => check::main(&arguments),
         Command::Partition(arguments) => partition::main(&arguments),
         Command::Study(arguments) => study::main(&arguments),
+        Command::Report(arguments) => report::main(&arguments),
+        Command::Completions(arguments) => shell::completions(&arguments),
+        Command::Man(arguments) => shell::man(&arguments),
     }
 }
 

@@ -1,16 +1,18 @@
 //! `sph run`: simulates a scene.
 
+use super::log::Log;
 use super::progress::Progress;
 use super::{
     BAD_INPUT, FAILED, STOPPED, SceneArguments, count, diagnostics, duration, seconds, threads,
 };
 use crate::error::RunError;
-use crate::run::{Existing, Notes, RunOptions, Stop, Summary, World, run};
+use crate::run::{Existing, Notes, RunOptions, Stop, Summary, World, run, shell_line};
 use crate::scene::{ErrorKind, SceneError, Sources};
 use clap::Args;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Duration;
 
 #[derive(Debug, Args)]
@@ -46,6 +48,10 @@ pub struct RunArguments {
     /// The same results, only slower; shows what the overlap is worth
     #[arg(long)]
     blocking: bool,
+    /// Add progress, notes and the end to this file, as lines with the time and without control
+    /// characters, for batch jobs
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
     /// No progress bar, notes and closing words; summary.json holds the notes
     #[arg(long)]
     pub quiet: bool,
@@ -68,6 +74,7 @@ impl RunArguments {
             max_wall: self.max_wall,
             stop: Stop::default(),
             notes: Notes::default(),
+            command: None,
         }
     }
 }
@@ -124,28 +131,64 @@ fn simulate(world: &World, arguments: &RunArguments) -> Result<(), RunError> {
     let scene = world.agree(arguments.scene.read().map_err(RunError::from))?;
     let progress = Progress::new(arguments.quiet || !world.speaks());
     let stop = Stop::on_signals().map_err(RunError::Signals)?;
-    let notes = if arguments.quiet || !world.speaks() {
-        Notes::default()
-    } else {
-        let progress = progress.clone();
-        Notes::told_to(move |note| progress.above(|| diagnostics::show_note(note)))
+    let command = Some(command(world));
+    let log = world.agree(open_log(world, arguments))?;
+    let told = log.clone();
+    let (bar, quiet) = (progress.clone(), arguments.quiet || !world.speaks());
+    let notes = Notes::told_to(move |note| {
+        if let Some(log) = &told {
+            log.line(&format!("note: {note}"));
+        }
+        if !quiet {
+            bar.above(|| diagnostics::show_note(note));
+        }
+    });
+    let say = |text: &str| {
+        if let Some(log) = &log {
+            log.line(text);
+        }
     };
-    let options = RunOptions { stop, notes, ..arguments.options() };
-    let result = run(world, &scene, &options, &|status| progress.show(status));
+    say(&format!("begin: {}", command.as_deref().unwrap_or_default()));
+    let options = RunOptions { stop, notes, command, ..arguments.options() };
+    let result = run(world, &scene, &options, &|status| {
+        progress.show(status);
+        if let Some(log) = &log {
+            log.show(status);
+        }
+    });
     progress.finish();
-    let summary = result?;
+    let summary = result.inspect_err(|error| say(&format!("end: {error}")))?;
     if world.speaks() {
         let path = options.out.join("summary.json");
         let text = serde_json::to_string_pretty(&summary).map_err(|error| {
             RunError::Ranks(format!("the summary cannot be written as JSON: {error}"))
         })?;
         sph_io::write_text_atomically(&path, &(text + "\n"))?;
+        closing_words(&summary, &options).lines().for_each(|line| say(&format!("end: {line}")));
         if !arguments.quiet {
             // A closed standard output is no reason to fail a finished run.
             let _ = writeln!(std::io::stdout(), "{}", closing_words(&summary, &options));
         }
     }
     Ok(())
+}
+
+/// The log of the process that speaks.
+fn open_log(world: &World, arguments: &RunArguments) -> Result<Option<Arc<Log>>, RunError> {
+    let Some(path) = arguments.log.as_ref().filter(|_| world.speaks()) else { return Ok(None) };
+    let failed = |source| sph_io::IoError::Write { path: path.clone(), source };
+    let log = Log::open(path).map_err(failed)?;
+    Ok(Some(Arc::new(log)))
+}
+
+/// The command that started this run.
+fn command(world: &World) -> String {
+    let arguments = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+    let launcher = match world.size() {
+        1 => String::new(),
+        size => format!("mpirun -n {size} "),
+    };
+    launcher + &shell_line(std::iter::once("sph".to_owned()).chain(arguments))
 }
 
 fn closing_words(summary: &Summary, options: &RunOptions) -> String {
@@ -170,5 +213,7 @@ fn closing_words(summary: &Summary, options: &RunOptions) -> String {
         let lost = summary.lost_particles;
         text += &format!("\n{lost} particle(s) left the domain and were removed: see lost.csv");
     }
-    text + &format!("\nresults in {}", options.out.display())
+    let out = options.out.display().to_string();
+    let report = shell_line(["sph", "report", &out]);
+    text + &format!("\nresults in {out}\nas a page with pictures and curves: {report}")
 }

@@ -3,9 +3,11 @@
 use super::load_log::LoadRow;
 use super::plan::RunPlan;
 use super::samples::Budget;
+use super::snapshot_choice::SnapshotChoice;
 use crate::error::RunError;
 use crate::loads::NUMBERS;
 use crate::model::Model;
+use crate::scene::SnapshotField;
 use crate::simulation::{FullStep, Lost};
 use crate::walls::WallElements;
 use sph_io::{IoError, ParticleFrame, SnapshotSeries, TableWriter};
@@ -24,6 +26,7 @@ pub struct Files {
     reference: Option<TableWriter>,
     lost: TableWriter,
     snapshots: u64,
+    choice: SnapshotChoice,
 }
 
 impl Files {
@@ -77,6 +80,7 @@ impl Files {
             },
             lost: table("lost", &lost_columns(D))?,
             snapshots: 0,
+            choice: plan.snapshot_choice.clone(),
         })
     }
 
@@ -88,14 +92,20 @@ impl Files {
     ) -> Result<(), RunError> {
         // The pressure of a wall is a matter of each pair; 0 keeps the array in every file.
         let kind: Vec<u16> = walls.solid.iter().map(|solid| FLUID + 1 + solid).collect();
-        let frame = ParticleFrame::new(0.0, &walls.position)
-            .with("velocity", vec![[0.0_f32; D]; walls.len()])
-            .with("pressure", vec![0.0_f32; walls.len()])
-            .with("density", vec![density0 as f32; walls.len()])
-            .with("normal", single(&walls.normal))
-            .with("kind", &kind)
-            .with("id", &walls.id);
-        Ok(self.series.fixed_part("walls", &frame)?)
+        let mut frame = ParticleFrame::new(0.0, &walls.position);
+        for field in SnapshotField::ALL {
+            frame = match field {
+                field if !self.choice.has(field) => frame,
+                SnapshotField::Velocity => frame.with("velocity", vec![[0.0_f32; D]; walls.len()]),
+                SnapshotField::Pressure => frame.with("pressure", vec![0.0_f32; walls.len()]),
+                SnapshotField::Density => frame.with("density", vec![density0 as f32; walls.len()]),
+                SnapshotField::Kind => frame.with("kind", &kind),
+                SnapshotField::Id => frame.with("id", &walls.id),
+            };
+        }
+        let rows = self.choice.rows(None, &walls.position);
+        let frame = within(frame.with("normal", single(&walls.normal)), rows.as_deref());
+        Ok(self.series.fixed_part("walls", &self.choice.packed(frame))?)
     }
 
     /// Writes a snapshot of the fluid.
@@ -105,15 +115,21 @@ impl Files {
         full: &FullStep<D>,
     ) -> Result<(), RunError> {
         let eos = &model.equation_of_state;
-        let pressure: Vec<f32> = full.density.iter().map(|d| eos.pressure(*d) as f32).collect();
-        let kind = vec![FLUID; full.id.len()];
-        let frame = ParticleFrame::new(full.time, &full.position)
-            .with("velocity", single(&full.velocity))
-            .with("pressure", pressure)
-            .with("density", single_scalars(&full.density))
-            .with("kind", kind)
-            .with("id", &full.id);
-        self.series.write(&frame)?;
+        let pressure =
+            || full.density.iter().map(|d| eos.pressure(*d) as f32).collect::<Vec<f32>>();
+        let mut frame = ParticleFrame::new(full.time, &full.position);
+        for field in SnapshotField::ALL {
+            frame = match field {
+                field if !self.choice.has(field) => frame,
+                SnapshotField::Velocity => frame.with("velocity", single(&full.velocity)),
+                SnapshotField::Pressure => frame.with("pressure", pressure()),
+                SnapshotField::Density => frame.with("density", single_scalars(&full.density)),
+                SnapshotField::Kind => frame.with("kind", vec![FLUID; full.id.len()]),
+                SnapshotField::Id => frame.with("id", &full.id),
+            };
+        }
+        let rows = self.choice.rows(Some(&full.id), &full.position);
+        self.series.write(&self.choice.packed(within(frame, rows.as_deref())))?;
         self.snapshots += 1;
         Ok(())
     }
@@ -172,6 +188,17 @@ impl Files {
     /// Snapshots written by this process.
     pub fn snapshots(&self) -> u64 {
         self.snapshots
+    }
+}
+
+/// The frame of these rows, or of all.
+fn within<'a, const D: usize>(
+    frame: ParticleFrame<'a, D>,
+    rows: Option<&'a [u32]>,
+) -> ParticleFrame<'a, D> {
+    match rows {
+        Some(rows) => frame.select(rows),
+        None => frame,
     }
 }
 

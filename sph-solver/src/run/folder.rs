@@ -1,5 +1,6 @@
 //! The folder of a run: one run at a time, and no results overwritten by accident.
 
+use super::record::{RECORD, Record};
 use crate::error::RunError;
 use sph_io::PvdIndex;
 use std::fs::{self, File, TryLockError};
@@ -149,6 +150,7 @@ fn files_of_runs(folder: &Path) -> io::Result<Vec<PathBuf>> {
         .collect();
     let of_a_run = |name: &String| {
         name == "summary.json"
+            || (name == RECORD && Record::read(folder).is_some())
             || is_checkpoint(name)
             || is_table(folder, name)
             || name.strip_suffix(".pvd").is_some_and(|stem| series.contains(&stem))

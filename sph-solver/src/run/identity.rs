@@ -159,6 +159,17 @@ fn settings(scene: &Scene, end_time: f64, checkpoints: Option<f64>) -> Values {
     interval("output.snapshots", output.snapshots.as_deref().copied());
     interval("output.energies", output.energies.as_deref().copied());
     interval("output.checkpoint_every", checkpoints);
+    if let Some(fields) = &output.fields {
+        values.set("output.fields", &fields.iter().map(word).collect::<Vec<_>>().join(", "));
+    }
+    if let Some(region) = &output.region {
+        values.set("output.region", &format!("{:?} to {:?}", *region.min, *region.max));
+    }
+    if let Some(every) = &output.every_nth {
+        values.set("output.every_nth", &**every);
+    }
+    values.set("output.positions", &word(&output.positions));
+    values.set("output.compression", &word(&output.compression));
     for probe in &scene.probe {
         values.set(format!("probe {}", *probe.name), &describe(probe));
     }

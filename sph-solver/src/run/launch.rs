@@ -8,8 +8,10 @@ use super::identity::Identity;
 use super::notes::Notes;
 use super::plan::RunPlan;
 use super::reference::FieldReference;
+use super::record::Record;
 use super::samples::{Probe, Quantity};
 use super::shares::Shares;
+use super::snapshot_choice::SnapshotChoice;
 use super::stop::Stop;
 use super::summary::{Meta, Summary};
 use super::table::{Features, Job, Precision, Viscosity, run_job};
@@ -47,6 +49,8 @@ pub struct RunOptions {
     pub stop: Stop,
     /// Where remarks about the run go.
     pub notes: Notes,
+    /// The command that asked for the run, for its record.
+    pub command: Option<String>,
 }
 
 /// Runs a scene and returns its summary, the same on all processes. `watch` is called after each
@@ -80,6 +84,8 @@ fn run_in<const D: usize>(
     if let Some(note) = folder.as_ref().and_then(RunFolder::note) {
         options.notes.add(note);
     }
+    let record = Record::new(scene, launch.plan.end_time, options.command.as_deref());
+    world.once(|| record.write(&options.out, options.existing == Existing::Resume))?;
     launch.notes.iter().for_each(|note| options.notes.add(note.as_str()));
     launch.run(world, watch)
 }
@@ -116,6 +122,7 @@ impl<const D: usize> Launch<D> {
             out: options.out.clone(),
             end_time,
             snapshots: output.snapshots.as_deref().copied(),
+            snapshot_choice: SnapshotChoice::new(output),
             samples: output.energies.as_deref().copied(),
             checkpoints,
             probes: scene

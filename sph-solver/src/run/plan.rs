@@ -4,6 +4,7 @@ use super::identity::Identity;
 use super::notes::Notes;
 use super::reference::FieldReference;
 use super::samples::Probe;
+use super::snapshot_choice::SnapshotChoice;
 use super::stop::Stop;
 use std::path::PathBuf;
 
@@ -22,6 +23,8 @@ pub struct RunPlan<const D: usize> {
     pub end_time: f64,
     /// Seconds between snapshots.
     pub snapshots: Option<f64>,
+    /// What snapshots hold.
+    pub snapshot_choice: SnapshotChoice,
     /// Seconds between rows of the tables.
     pub samples: Option<f64>,
     /// Seconds between checkpoints.

@@ -123,6 +123,16 @@ impl Scene {
         self.sources.get(Place::default()).map_or("", |source| &source.text)
     }
 
+    /// The scene file as the user named it.
+    pub fn file_name(&self) -> &str {
+        self.sources.get(Place::default()).map_or("", |source| &source.name)
+    }
+
+    /// Folder of the scene file; empty for the current one.
+    pub(super) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// The `--set` arguments in order.
     pub fn overrides(&self) -> impl Iterator<Item = &str> {
         self.sources.arguments()

@@ -2,9 +2,11 @@
 
 use super::constants::time_step;
 use super::report::{
-    CheckReport, PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SolidCount, VolumeOfFluid,
+    CheckReport, PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SnapshotVolume,
+    SolidCount, VolumeOfFluid,
 };
 use super::{Setup, lattice_neighbours};
+use crate::run::snapshot_choice::SnapshotChoice;
 use crate::scene::{ErrorKind, Scene, SceneError};
 use sph_geometry::Aabb;
 
@@ -52,8 +54,24 @@ impl<const D: usize> Setup<D> {
             particle_updates,
             core_seconds: pairs / PAIRS_PER_CORE_SECOND,
             memory_bytes: self.memory_bytes(),
+            snapshots: snapshots::<D>(scene, fluid, total - fluid),
             ranks,
             meshes: self.meshes.clone(),
         })
     }
+}
+
+/// Bytes of a wall element in a snapshot: its place and its normal, which repeat along a wall.
+const WALL_BYTES: f64 = 40.0;
+
+/// What the snapshots of a run take on the disk.
+fn snapshots<const D: usize>(scene: &Scene, fluid: usize, walls: usize) -> Option<SnapshotVolume> {
+    let interval = scene.output.snapshots.as_deref()?;
+    let choice = SnapshotChoice::new(&scene.output);
+    // The first state and the last one count too.
+    let count = (*scene.end_time / interval).ceil() + 1.0;
+    let bytes_per_particle = choice.bytes_per_particle(D);
+    let bytes = count * choice.share() * fluid as f64 * bytes_per_particle;
+    let bytes = bytes + WALL_BYTES * walls as f64;
+    Some(SnapshotVolume { count: count as u64, bytes, bytes_per_particle })
 }

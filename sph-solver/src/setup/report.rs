@@ -60,6 +60,8 @@ pub struct CheckReport {
     pub core_seconds: f64,
     /// Memory of all ranks together, bytes.
     pub memory_bytes: f64,
+    /// Snapshots on the disk, if the scene has any.
+    pub snapshots: Option<SnapshotVolume>,
     /// Ranks asked for.
     pub ranks: usize,
     /// Meshes in use.
@@ -86,6 +88,18 @@ pub struct VolumeOfFluid {
     pub regions: f64,
     /// Of the particles that fill them.
     pub particles: f64,
+}
+
+/// Snapshots of a whole run on the disk.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SnapshotVolume {
+    /// Number of them.
+    pub count: u64,
+    /// Bytes of all of them and of the walls, once nothing lies on a lattice any more; less where a
+    /// region leaves some out.
+    pub bytes: f64,
+    /// Bytes of a particle.
+    pub bytes_per_particle: f64,
 }
 
 /// Wall particles of a solid.
@@ -161,6 +175,16 @@ impl fmt::Display for CheckReport {
         )?;
         let memory = self.memory_bytes / (1u64 << 20) as f64;
         row("memory", format!("about {} MiB on {} rank(s)", grouped(memory.ceil()), self.ranks))?;
+        if let Some(SnapshotVolume { count, bytes, bytes_per_particle }) = self.snapshots {
+            let count = grouped(count as f64);
+            let bytes = size(bytes);
+            row(
+                "on disk",
+                format!(
+                    "up to {bytes} in {count} snapshots, {bytes_per_particle:.0} bytes per particle"
+                ),
+            )?;
+        }
         for mesh in &self.meshes {
             let (path, corners) = (&mesh.path, corners(&mesh.bounding_box));
             let triangles = grouped(mesh.triangles as f64);
@@ -222,6 +246,16 @@ fn scaled(number: f64) -> String {
         _ => (1.0, ""),
     };
     format!("{:.3}{unit}", number / scale)
+}
+
+/// Bytes in decimal units.
+fn size(bytes: f64) -> String {
+    match bytes {
+        b if b >= 1e12 => format!("{:.1} TB", b / 1e12),
+        b if b >= 1e9 => format!("{:.1} GB", b / 1e9),
+        b if b >= 1e6 => format!("{:.1} MB", b / 1e6),
+        b => format!("{:.0} kB", (b / 1e3).ceil()),
+    }
 }
 
 fn duration(seconds: f64) -> String {

@@ -146,5 +146,29 @@ pub fn intervals(values: &Values<'_>) -> Result<(), SceneError> {
             values.positive(key, interval, help)?;
         }
     }
-    Ok(())
+    snapshots(values)
+}
+
+fn snapshots(values: &Values<'_>) -> Result<(), SceneError> {
+    let output = &values.scene.output;
+    if let Some(fields) = &output.fields {
+        let twice = |(index, field)| fields[..index].contains(field);
+        if fields.iter().enumerate().any(twice) {
+            let what = "`output.fields` names a field twice".into();
+            return Err(values.invalid(fields.place, what, "name each field once"));
+        }
+    }
+    if let Some(region) = &output.region {
+        values.corners("output.region", &region.min, &region.max)?;
+    }
+    match &output.every_nth {
+        Some(every) if **every == 0 => Err(values.out_of_range(
+            every.place,
+            "output.every_nth",
+            "1 or more",
+            **every,
+            "10 keeps a tenth of the particles; leave the key out for all of them",
+        )),
+        _ => Ok(()),
+    }
 }

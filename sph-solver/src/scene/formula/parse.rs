@@ -23,9 +23,15 @@ pub struct FormulaError {
 
 /// Parentheses and exponents within each other; more would exhaust the call stack.
 const DEEPEST: usize = 100;
+/// Bytes of a formula: it is evaluated once per particle.
+const LONGEST: usize = 4096;
 
 /// Reads a formula in variables with these names.
 pub(super) fn parse(text: &str, variables: &[&'static str]) -> Result<Program, FormulaError> {
+    if text.len() > LONGEST {
+        let reason = format!("it has {} characters, more than {LONGEST}", text.chars().count());
+        return Err(error(reason, "simplify it, or divide the region into several"));
+    }
     let program = Program::default();
     let mut parser = Parser { text, variables, at: 0, nesting: 0, waiting: 0, program };
     if parser.peek().is_none() {
