@@ -16,6 +16,7 @@
 #![forbid(unsafe_code)]
 
 mod aabb;
+mod affine;
 mod boundary;
 mod lattice;
 mod mesh;
@@ -25,13 +26,14 @@ mod vector;
 mod wall_elements;
 
 pub use aabb::Aabb;
+pub use affine::Affine;
 pub use boundary::{Domain, WallParticles, free_cells, solid_at, wall_particles};
 pub use lattice::{
     Lattice, LatticeError, LatticeRuns, NearSurface, fill_lattice, lattice_inside, near_surface,
 };
 pub use mesh::{
-    Defects, MassProperties, MeshError, MeshFile, MeshFormat, MeshReport, TriangleMesh, check,
-    mass_properties,
+    Bodies, Defects, MassProperties, MeshError, MeshFile, MeshFormat, MeshReport, Repaired,
+    Repairs, TriangleMesh, bodies, check, mass_properties, repaired,
 };
 pub use shape::{Nearest, Shape, ShapeError, SignedDistance};
 pub use solid::{FluidSide, Solid, depth_in_solids};
