@@ -6,9 +6,9 @@
 //! those along it, and walls on cell sides are whole cells in the middle of cells, a perfect lattice
 //! with the fluid.
 
-use crate::boundary::{Domain, free_cells};
-use crate::lattice::{Lattice, LatticeError, LatticeRuns, ON_SURFACE, Reach};
-use crate::solid::{Solid, depth_in_solids};
+use crate::boundary::{Domain, Layer};
+use crate::lattice::{Lattice, LatticeError, ON_SURFACE};
+use crate::solid::Solid;
 
 /// Elements of walls, structure of arrays.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -48,22 +48,13 @@ pub fn wall_elements<const D: usize>(
     support: f64,
     domain: &Domain<D>,
 ) -> Result<WallElements<D>, LatticeError> {
-    if !support.is_finite() || support <= 0.0 {
-        return Err(LatticeError::Support { support });
-    }
     let spacing = lattice.spacing();
-    let free = free_cells(solids, lattice, domain)?;
-    let reach = Reach::new(support / spacing, domain.periodic);
     let margin = ON_SURFACE * spacing;
-    let around = domain.cells(lattice, support)?;
     // Half the diagonal of a cell: the surface may cut a cell whose middle is so far from it.
     let half = 0.5 * spacing * (D as f64).sqrt();
-    let layer = LatticeRuns::trace(*lattice, around, |x| {
-        let depth = depth_in_solids(solids, x);
-        (margin - half - depth).max(depth - support + margin)
-    });
+    let layer = Layer::trace(solids, lattice, support, domain, margin - half)?;
     let mut elements = WallElements::default();
-    for index in layer.indices().filter(|index| free.is_near(index, &reach)) {
+    for index in layer.near_fluid() {
         let center = lattice.point(&index);
         let Some((position, share)) = material(solids, &center, spacing, half, margin) else {
             continue;
@@ -74,8 +65,9 @@ pub fn wall_elements<const D: usize>(
         elements.positions.push(position);
         elements.volumes.push(share * spacing.powi(D as i32));
         elements.solids.push(owner as u32);
-        elements.normals.push(solids[owner].normal(&position));
-        elements.depths.push(depth(owner));
+        let (depth, normal) = solids[owner].depth_and_normal(&position);
+        elements.normals.push(normal);
+        elements.depths.push(depth);
     }
     Ok(elements)
 }

@@ -17,7 +17,7 @@ pub enum MeshError {
         source: std::io::Error,
     },
     /// The file is no mesh file that can be read, or a broken one.
-    #[error("the mesh {path} cannot be read: {reason}; export the surface again as STL, OBJ or PLY", path = path.display())]
+    #[error("the mesh {path} cannot be read: {reason}; export the surface again as STL, OBJ, PLY or VTK", path = path.display())]
     Format {
         /// The file.
         path: PathBuf,

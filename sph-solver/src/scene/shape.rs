@@ -28,8 +28,8 @@ macro_rules! with_shape_keys {
             pub plane: Option<At<$crate::scene::shape::PlaneKeys>>,
             /// Corners of a simple polygon in either direction; two dimensions only.
             pub polygon: Option<At<Vec<At<Vec<f64>>>>>,
-            /// A closed surface in an STL, OBJ or PLY file, relative to the folder of the scene; three dimensions
-            /// only. Several bodies in it are united; one inside another that faces the other way is a cavity.
+            /// A closed surface in an STL, OBJ, PLY or VTK file, relative to the folder of the scene; three
+            /// dimensions only. Several bodies in it are united; one inside another that faces the other way is a cavity.
             pub mesh: Option<At<std::path::PathBuf>>,
             /// Everything that is in any of these shapes.
             pub union: Option<At<Vec<At<$crate::scene::shape::ShapeKeys>>>>,

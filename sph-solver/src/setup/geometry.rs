@@ -43,7 +43,8 @@ impl<const D: usize> Geometry<D> {
         let solids = walls::solids(scene, &mut shapes)?;
         let regions = regions(fluid_name, fluid, &mut shapes)?;
         sizes::check(scene, &solids, &regions, &shapes.meshes)?;
-        let fluid_box = fluid_box(scene, fluid, &regions, bytes)?;
+        let fluid_box = fluid_box(scene, fluid, &regions, bytes)
+            .map_err(|error| sizes::explain(error, scene, &solids, &regions, &shapes.meshes))?;
         let lattice = Lattice::new(regions[0].bounding_box().min, *numerics.spacing)
             .map_err(|error| lattice_error(scene, numerics.spacing.place, &error))?;
         let support = *numerics.spacing * *numerics.support;

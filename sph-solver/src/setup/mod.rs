@@ -84,7 +84,8 @@ impl<const D: usize> Setup<D> {
                 .map_err(|error| sizes::explain(error, scene, &solids, &regions, &meshes))?,
         );
         if position.is_empty() {
-            return Err(nothing(scene, fluid));
+            let error = nothing(scene, fluid);
+            return Err(sizes::explain(error, scene, &solids, &regions, &meshes));
         }
         let filling = Filling::new(scene, fluid, position, ends)?;
         domain::check(scene, fluid, &domain, &filling.position)?;
@@ -126,7 +127,8 @@ impl<const D: usize> Setup<D> {
         };
         let mass = density0 * spacing.powi(D as i32);
         let mut particles = filling.finish(scene, fluid, &equation_of_state, &lattice, mass)?;
-        walls::add_walls(scene, &solids, &lattice, &constants, &mut particles)?;
+        walls::add_walls(scene, &solids, &lattice, &constants, &mut particles)
+            .map_err(|error| sizes::explain(error, scene, &solids, &regions, &meshes))?;
         sizes::without_particles(scene, &solids, &regions, &meshes, &domain, &particles)?;
         notes.extend(thickness::notes(scene, &solids, &domain, &particles));
         Ok(Self {

@@ -114,7 +114,7 @@ impl<'a> Shapes<'a> {
         let refuse_mesh = |error: MeshError| match error {
             MeshError::Read { source, .. } => refuse(source.to_string(), missing_help(&file)),
             MeshError::Format { reason, .. } => {
-                refuse(reason, "export the surface again as STL, OBJ or PLY".into())
+                refuse(reason, "export the surface again as STL, OBJ, PLY or VTK".into())
             }
             other => {
                 let (reason, help) = in_two(&other.to_string());
@@ -262,7 +262,7 @@ fn missing_help(file: &Path) -> String {
     };
     let is_mesh = |name: &String| {
         let name = name.to_lowercase();
-        [".stl", ".obj", ".ply"].iter().any(|end| name.ends_with(end))
+        [".stl", ".obj", ".ply", ".vtk", ".vtp", ".vtu"].iter().any(|end| name.ends_with(end))
     };
     let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names: Vec<String> = names.filter(is_mesh).collect();

@@ -79,14 +79,14 @@ fn in_words<const D: usize>(name: &str, thin: &Thin<D>, spacing: f64) -> String 
     )
 }
 
-/// Two significant digits, not more than the number.
+/// Two significant digits, not more than the number but for rounding.
 fn rounded_down(number: f64) -> f64 {
     if number <= 0.0 {
         return number;
     }
     let decimals = (1.0 - number.log10().floor()).clamp(0.0, 300.0) as i32;
     let unit = 10.0_f64.powi(decimals);
-    ((number * unit * (1.0 + 1e-9)).floor() / unit).min(number)
+    (number * unit * (1.0 + 1e-9)).floor() / unit
 }
 
 /// Thickness of the material of all solids behind a point of a surface, if it is below `most` (m) and
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn spacings_that_do_are_short_numbers() {
-        let found = [0.0051, 0.01, 0.123, 3.99].map(rounded_down);
-        assert_eq!(found, [0.0051, 0.01, 0.12, 3.9]);
+        let found = [0.0051, 0.01, 0.123, 3.99, 0.01499999999999998].map(rounded_down);
+        assert_eq!(found, [0.0051, 0.01, 0.12, 3.9, 0.015]);
     }
 }
