@@ -59,9 +59,14 @@ pub fn wall_elements<const D: usize>(
         let Some((position, share)) = material(solids, &center, spacing, half, margin) else {
             continue;
         };
-        let depth = |k: usize| solids[k].depth_in_solid(&position);
-        let deepest = (0..solids.len()).reduce(|a, b| if depth(b) > depth(a) { b } else { a });
-        let Some(owner) = deepest else { continue };
+        let mut deepest = (f64::NEG_INFINITY, None);
+        for (k, solid) in solids.iter().enumerate() {
+            let depth = solid.depth_above(&position, deepest.0);
+            if depth > deepest.0 {
+                deepest = (depth, Some(k));
+            }
+        }
+        let Some(owner) = deepest.1 else { continue };
         elements.positions.push(position);
         elements.volumes.push(share * spacing.powi(D as i32));
         elements.solids.push(owner as u32);
@@ -81,7 +86,7 @@ fn material<const D: usize>(
     half: f64,
     margin: f64,
 ) -> Option<([f64; D], f64)> {
-    let depths: Vec<f64> = solids.iter().map(|solid| solid.depth_in_solid(center)).collect();
+    let depths: Vec<f64> = solids.iter().map(|solid| solid.depth_above(center, -half)).collect();
     if depths.iter().any(|depth| *depth >= half - margin) {
         return Some((*center, 1.0));
     }

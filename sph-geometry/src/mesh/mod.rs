@@ -21,6 +21,7 @@ pub use repair::{Repaired, Repairs, repaired};
 
 use crate::aabb::Aabb;
 use crate::affine::Affine;
+use parry3d_f64::math::Vector;
 
 /// A surface made of triangles that share vertices. Seen from outside, the corners of a triangle
 /// run counter-clockwise.
@@ -69,11 +70,10 @@ impl TriangleMesh {
     /// When there are no triangles, or all vertices lie in a plane.
     pub fn convex_hull(&self) -> Result<Self, MeshError> {
         self.validate()?;
-        let points: Vec<_> =
-            self.vertices.iter().map(|x| parry3d_f64::math::Vector::from_array(*x)).collect();
+        let points: Vec<Vector> = self.vertices.iter().map(|x| Vector::from_array(*x)).collect();
         let (vertices, triangles) = parry3d_f64::transformation::try_convex_hull(&points)
             .map_err(|_| MeshError::NoVolume)?;
-        let vertices = vertices.iter().map(|x| x.to_array()).collect();
+        let vertices = vertices.iter().map(Vector::to_array).collect();
         Ok(Self { vertices, triangles })
     }
 

@@ -30,9 +30,9 @@ impl<const D: usize> Moved<D> {
         let inside = inner.bounding_box();
         let mut bounds = Aabb::new(offset, offset);
         for (axis, (min, max)) in axes.iter().zip(inside.min.iter().zip(inside.max)) {
-            for k in 0..D {
+            for (k, part) in axis.iter().enumerate() {
                 // An endless side along an axis at right angles adds nothing.
-                let reach = |x: f64| if axis[k] == 0.0 { 0.0 } else { axis[k] * scale * x };
+                let reach = |x: f64| if *part == 0.0 { 0.0 } else { part * scale * x };
                 bounds.min[k] += reach(*min).min(reach(max));
                 bounds.max[k] += reach(*min).max(reach(max));
             }

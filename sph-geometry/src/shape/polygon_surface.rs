@@ -55,7 +55,7 @@ impl PolygonSurface {
 
     /// Its corners in order.
     pub fn corners(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
-        self.edges.vertices().iter().map(|x| x.to_array())
+        self.edges.vertices().iter().map(Vector::to_array)
     }
 
     fn project(&self, x: &[f64; 2]) -> ([f64; 2], bool, u32) {

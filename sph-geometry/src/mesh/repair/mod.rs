@@ -72,6 +72,9 @@ pub fn repaired(mesh: &TriangleMesh) -> Result<Repaired, MeshError> {
     };
     let mut mended = mesh.clone();
     mended.triangles.retain(|triangle| !is_collapsed(triangle));
+    if is_in_order(&mended) {
+        return Ok(Repaired { mesh: mended, repairs });
+    }
     without_copies(&mut mended, &mut repairs.duplicates);
     if has_rims(&mended) {
         let bounds = mended.bounding_box();
@@ -86,6 +89,14 @@ pub fn repaired(mesh: &TriangleMesh) -> Result<Repaired, MeshError> {
         return Err(MeshError::Empty);
     }
     Ok(Repaired { mesh: mended, repairs })
+}
+
+/// Whether every edge belongs to two triangles that agree about it.
+fn is_in_order(mesh: &TriangleMesh) -> bool {
+    let all = sides::sorted(mesh);
+    let mut edges = all.chunk_by(|a, b| a.ends == b.ends);
+    !all.is_empty()
+        && edges.all(|edge| matches!(edge, [one, other] if one.forward != other.forward))
 }
 
 /// Removes triangles that have the same corners as an earlier one and face the same way; if there are

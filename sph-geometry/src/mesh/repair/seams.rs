@@ -8,10 +8,17 @@ use std::collections::HashMap;
 /// Widths of seams that are tried, relative to the size of the mesh, the smallest first.
 const WIDTHS: [f64; 4] = [1e-8, 1e-7, 1e-6, 1e-5];
 
+/// A mesh with its open edges counted, and which vertices became which in it.
+struct Attempt {
+    left: usize,
+    mesh: TriangleMesh,
+    merged: Vec<(u32, u32)>,
+}
+
 /// Merges vertices of open edges that lie closer to each other than a small part of the size (m) of the
 /// mesh, by the narrowest width that leaves no open edge, or else the fewest.
 pub fn close(mesh: &mut TriangleMesh, size: f64, repairs: &mut Repairs) {
-    let mut best: Option<(usize, TriangleMesh, Vec<(u32, u32)>)> = None;
+    let mut best: Option<Attempt> = None;
     let before = rims(mesh).len();
     for width in WIDTHS {
         let merged = merges(mesh, width * size);
@@ -20,14 +27,14 @@ pub fn close(mesh: &mut TriangleMesh, size: f64, repairs: &mut Repairs) {
         }
         let welded = welded(mesh, &merged);
         let left = rims(&welded).len();
-        if left < best.as_ref().map_or(before, |(least, _, _)| *least) {
-            best = Some((left, welded, merged));
+        if left < best.as_ref().map_or(before, |best| best.left) {
+            best = Some(Attempt { left, mesh: welded, merged });
         }
         if left == 0 {
             break;
         }
     }
-    let Some((_, welded, merged)) = best else { return };
+    let Some(Attempt { mesh: welded, merged, .. }) = best else { return };
     for (from, to) in merged {
         let [from, to] = [from, to].map(|vertex| mesh.vertices[vertex as usize]);
         repairs.welded.add(from);
