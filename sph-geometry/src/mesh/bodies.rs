@@ -64,9 +64,13 @@ pub fn bodies(mesh: &TriangleMesh) -> Result<Bodies, MeshError> {
     let all = shells.len();
     let flat = |shell: &Shell| {
         let size = crate::vector::distance(&shell.bounds.min, &shell.bounds.max);
-        shell.volume.abs() <= check::NO_VOLUME * size.powi(3)
+        // Coordinates so large that volumes overflow bound nothing either.
+        shell.volume.is_nan() || shell.volume.abs() <= check::NO_VOLUME * size.powi(3)
     };
     shells.retain(|shell| !flat(shell));
+    if shells.is_empty() {
+        return Err(MeshError::NoVolume);
+    }
     // Those that may contain others first.
     shells.sort_by(|a, b| b.volume.abs().total_cmp(&a.volume.abs()));
     let around = containers(&shells)?;
