@@ -3,8 +3,8 @@
 //! `cargo run --release -p sph-geometry --example timings`
 
 use sph_geometry::{
-    Domain, FluidSide, Lattice, Shape, Solid, TriangleMesh, fill_lattice, near_surface,
-    wall_particles,
+    Aabb, Domain, FluidSide, Lattice, Shape, Solid, TriangleMesh, bodies, fill_lattice,
+    near_surface, repaired, wall_elements, wall_particles,
 };
 use std::time::Instant;
 
@@ -34,6 +34,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("  … {} points", inside.len());
     }
 
+    million()?;
+
     let obstacle = TriangleMesh::cuboid([0.9, 0.28, 0.0], [1.02, 0.4, 0.44]);
     let solids = [
         Solid::new("tank", Shape::mesh(&tank)?, FluidSide::Inside),
@@ -49,6 +51,36 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let column = Shape::cuboid([0.0; 3], [0.4, 0.68, 0.3])?;
         let fluid = time("  fluid column", || fill_lattice(&column, &lattice))?;
         println!("  … {} particles", fluid.len());
+    }
+    Ok(())
+}
+
+/// Import, repair and sampling of a mesh of 1.3 million triangles.
+fn million() -> Result<(), Box<dyn std::error::Error>> {
+    let mut hull = TriangleMesh::sphere([0.8, 0.5, 0.3], 0.25, 8);
+    // Waves, so that the surface is no more convex than a real one.
+    for x in &mut hull.vertices {
+        x[2] += 0.01 * (40.0 * x[0]).sin() * (40.0 * x[1]).cos();
+    }
+    let bytes = hull.to_stl()?;
+    let read =
+        time("read binary STL of 1.3 million triangles", || TriangleMesh::from_bytes(&bytes))?;
+    let mended = time("  repair", || repaired(&read))?;
+    let found = time("  find bodies", || bodies(&mended.mesh))?;
+    let shape = time("  build the shape", || Shape::bodies(&found))?;
+    let solids = [
+        Solid::new("tank", Shape::cuboid([0.0; 3], [1.6, 1.0, 0.6])?, FluidSide::Inside),
+        Solid::new("hull", shape, FluidSide::Outside),
+    ];
+    let domain = Domain::new(Aabb::new([0.0; 3], [1.6, 1.0, 0.6]));
+    for spacing in [0.02, 0.01, 0.005] {
+        let lattice = Lattice::new([0.0; 3], spacing)?;
+        let walls = time(&format!("  wall elements, spacing {spacing} m"), || {
+            wall_elements(&solids, &lattice, 3.0 * spacing, &domain)
+        })?;
+        println!("  … {} elements", walls.positions.len());
+        let inside = time("  lattice points inside", || fill_lattice(&solids[1].shape, &lattice))?;
+        println!("  … {} points", inside.len());
     }
     Ok(())
 }

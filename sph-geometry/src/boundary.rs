@@ -1,15 +1,14 @@
-//! Wall particles: dummy particles that fill a layer of one support radius inside solids.
+//! Where fluid can be, and the layer of material beside it.
 //!
-//! They lie on the lattice of the fluid. The fluid has its particles in the middle of cells, so a
-//! wall on the side of cells lies half a spacing from the last fluid layer and half a spacing from
-//! the first wall layer. A cell is material when its middle is, so any other wall becomes a stair
-//! whose steps lie up to half a spacing from it, and fluid and walls together stay a perfect
-//! lattice.
+//! [`wall_particles`] are whole cells of the lattice: a cell is material when its middle is. A wall on
+//! the side of cells lies half a spacing from the last layer of fluid and half a spacing from the first
+//! layer of wall particles, and fluid and walls together are a perfect lattice. Any other wall becomes a
+//! stair whose steps lie up to half a spacing from it. Where that matters,
+//! [`wall_elements`](crate::wall_elements) cut the cells at the surface.
 //!
-//! The alternative, moving wall particles along the normal into layers at depths of (k + ½)
-//! spacings, measured worse: particles come as close as 0.17 spacings, and `ΣVW − 1` at the fluid
-//! beside tilted walls grows from 0.005 to between 0.016 and 0.06, at worst 0.19
-//! (`examples/wall_quality.rs`). A smoother wall takes a smaller spacing.
+//! Moving whole cells along the normal into layers at depths of (k + ½) spacings measured worse than a
+//! stair: particles come as close as 0.17 spacings, and `ΣVW − 1` at the fluid beside tilted walls grows
+//! from 0.005 to between 0.016 and 0.06, at worst 0.19 (`examples/wall_quality.rs`).
 
 use crate::aabb::Aabb;
 use crate::lattice::{CellBox, Lattice, LatticeError, LatticeRuns, ON_SURFACE, Reach, axis_name};
@@ -106,6 +105,43 @@ pub fn solid_at<const D: usize>(
     solids.iter().position(|solid| solid.depth_in_solid(x) >= -margin)
 }
 
+/// The material less than a support radius below the surface.
+pub(crate) struct Layer<const D: usize> {
+    material: LatticeRuns<D>,
+    free: LatticeRuns<D>,
+    reach: Reach<D>,
+}
+
+impl<const D: usize> Layer<D> {
+    /// The lattice points deeper than `least` (m, negative outside of the material) and less deep than
+    /// `support` (m).
+    pub fn trace(
+        solids: &[Solid<D>],
+        lattice: &Lattice<D>,
+        support: f64,
+        domain: &Domain<D>,
+        least: f64,
+    ) -> Result<Self, LatticeError> {
+        if !support.is_finite() || support <= 0.0 {
+            return Err(LatticeError::Support { support });
+        }
+        let free = free_cells(solids, lattice, domain)?;
+        let reach = Reach::new(support / lattice.spacing(), domain.periodic);
+        let margin = ON_SURFACE * lattice.spacing();
+        let around = domain.cells(lattice, support)?;
+        let material = LatticeRuns::trace(*lattice, around, |x| {
+            let depth = depth_in_solids(solids, x);
+            (least - depth).max(depth - support + margin)
+        });
+        Ok(Self { material, free, reach })
+    }
+
+    /// Those that lie less than the support radius from a cell where fluid can be.
+    pub fn near_fluid(&self) -> impl Iterator<Item = [i64; D]> + '_ {
+        self.material.indices().filter(|index| self.free.is_near(index, &self.reach))
+    }
+}
+
 /// Makes the wall particles: the lattice points inside material that lie
 ///
 /// * less than `support` (m) below the surface of the material, and
@@ -120,20 +156,10 @@ pub fn wall_particles<const D: usize>(
     support: f64,
     domain: &Domain<D>,
 ) -> Result<WallParticles<D>, LatticeError> {
-    if !support.is_finite() || support <= 0.0 {
-        return Err(LatticeError::Support { support });
-    }
-    let spacing = lattice.spacing();
-    let free = free_cells(solids, lattice, domain)?;
-    let reach = Reach::new(support / spacing, domain.periodic);
-    let margin = ON_SURFACE * spacing;
-    let around = domain.cells(lattice, support)?;
-    let layer = LatticeRuns::trace(*lattice, around, |x| {
-        let depth = depth_in_solids(solids, x);
-        (-margin - depth).max(depth - support + margin)
-    });
+    let margin = ON_SURFACE * lattice.spacing();
+    let layer = Layer::trace(solids, lattice, support, domain, -margin)?;
     let mut particles = WallParticles::default();
-    for index in layer.indices().filter(|index| free.is_near(index, &reach)) {
+    for index in layer.near_fluid() {
         let position = lattice.point(&index);
         if let Some(solid) = solid_at(solids, &position, lattice) {
             let (depth, normal) = solids[solid].depth_and_normal(&position);

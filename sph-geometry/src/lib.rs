@@ -1,21 +1,23 @@
 //! Solids for particle methods: mesh import and checks, signed distances, particles of fluid
 //! regions and walls.
 //!
-//! * [`TriangleMesh`]: surfaces from STL, OBJ and PLY files; [`check`] tells whether one is closed and
-//!   consistently oriented, [`mass_properties`] what a body of that shape weighs.
+//! * [`TriangleMesh`]: surfaces from STL, OBJ, PLY and VTK files; [`check`] tells whether one is closed
+//!   and consistently oriented, [`repaired`] mends what is safe to mend, [`bodies`] tells which bodies
+//!   and cavities its shells bound, [`mass_properties`] what they weigh.
 //! * [`Shape`]: a set of points with a signed distance: primitives, meshes, polygons, unions and
 //!   differences, in two and three dimensions.
 //! * [`Solid`]: a shape with material on one side of its surface.
 //! * [`Lattice`]: where particles are placed; [`fill_lattice`] fills a region with them.
-//! * [`wall_particles`]: the particles of walls, one support radius deep and only near fluid.
+//! * [`wall_elements`]: the material of walls cell by cell, one support radius deep and only near fluid.
 //!
 //! Lengths are in metres, directions are unit vectors, `D` is the dimension.
 //!
-//! The README shows it from the STL file to the particles.
+//! The README shows it from the mesh file to the particles.
 
 #![forbid(unsafe_code)]
 
 mod aabb;
+mod affine;
 mod boundary;
 mod lattice;
 mod mesh;
@@ -25,13 +27,14 @@ mod vector;
 mod wall_elements;
 
 pub use aabb::Aabb;
+pub use affine::Affine;
 pub use boundary::{Domain, WallParticles, free_cells, solid_at, wall_particles};
 pub use lattice::{
     Lattice, LatticeError, LatticeRuns, NearSurface, fill_lattice, lattice_inside, near_surface,
 };
 pub use mesh::{
-    Defects, MassProperties, MeshError, MeshFile, MeshFormat, MeshReport, TriangleMesh, check,
-    mass_properties,
+    Bodies, Defects, MassProperties, MeshError, MeshFile, MeshFormat, MeshReport, Repaired,
+    Repairs, TriangleMesh, bodies, check, mass_properties, repaired,
 };
 pub use shape::{Nearest, Shape, ShapeError, SignedDistance};
 pub use solid::{FluidSide, Solid, depth_in_solids};

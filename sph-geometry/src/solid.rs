@@ -38,6 +38,18 @@ impl<const D: usize> Solid<D> {
         }
     }
 
+    /// [`depth_in_solid`](Self::depth_in_solid) where that is more than `least` (m), else a number from
+    /// it to `least`: far from the solid, its box says enough and costs nothing.
+    pub(crate) fn depth_above(&self, x: &[f64; D], least: f64) -> f64 {
+        if self.fluid_side == FluidSide::Outside {
+            let beyond = self.shape.bounding_box().signed_distance(x);
+            if beyond > 0.0 && -beyond <= least {
+                return -beyond;
+            }
+        }
+        self.depth_in_solid(x)
+    }
+
     /// Unit vector out of the material, into the fluid, at the nearest point of the surface.
     pub fn normal(&self, x: &[f64; D]) -> [f64; D] {
         let normal = self.shape.normal(x);
@@ -65,12 +77,14 @@ impl<const D: usize> Solid<D> {
 /// Depth below the surface of all solids together in m: the largest of their depths. Positive in
 /// material; at most the distance to free space.
 pub fn depth_in_solids<const D: usize>(solids: &[Solid<D>], x: &[f64; D]) -> f64 {
-    solids.iter().map(|solid| solid.depth_in_solid(x)).fold(f64::NEG_INFINITY, f64::max)
+    let deepest = |most: f64, solid: &Solid<D>| most.max(solid.depth_above(x, most));
+    solids.iter().fold(f64::NEG_INFINITY, deepest)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn a_tank_with_a_pillar() {
@@ -89,5 +103,28 @@ mod tests {
         assert_eq!(depth_in_solids(&solids, &[2.0, 1.75]), -0.25);
         assert_eq!(depth_in_solids(&solids, &[2.0, 1.25]), 0.25);
         assert_eq!(depth_in_solids::<2>(&[], &[0.0, 0.0]), f64::NEG_INFINITY);
+    }
+
+    proptest! {
+        #[test]
+        fn solids_far_away_change_nothing(
+            center in prop::array::uniform2(-2.0..2.0),
+            radius in 0.05..1.0,
+            x in prop::array::uniform2(-3.0..3.0),
+            least in -3.0..1.0_f64,
+        ) {
+            let tank = Shape::cuboid([-1.0, -1.0], [2.0, 1.0]).unwrap();
+            let ball = Shape::sphere(center, radius).unwrap();
+            let solids = [
+                Solid::new("tank", tank, FluidSide::Inside),
+                Solid::new("ball", ball, FluidSide::Outside),
+            ];
+            let depths = solids.each_ref().map(|solid| solid.depth_in_solid(&x));
+            prop_assert_eq!(depth_in_solids(&solids, &x), depths[0].max(depths[1]));
+            for (solid, depth) in solids.iter().zip(depths) {
+                let found = solid.depth_above(&x, least);
+                prop_assert!(found == depth || depth <= found && found <= least);
+            }
+        }
     }
 }

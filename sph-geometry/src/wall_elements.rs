@@ -6,9 +6,9 @@
 //! those along it, and walls on cell sides are whole cells in the middle of cells, a perfect lattice
 //! with the fluid.
 
-use crate::boundary::{Domain, free_cells};
-use crate::lattice::{Lattice, LatticeError, LatticeRuns, ON_SURFACE, Reach};
-use crate::solid::{Solid, depth_in_solids};
+use crate::boundary::{Domain, Layer};
+use crate::lattice::{Lattice, LatticeError, ON_SURFACE};
+use crate::solid::Solid;
 
 /// Elements of walls, structure of arrays.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -48,34 +48,31 @@ pub fn wall_elements<const D: usize>(
     support: f64,
     domain: &Domain<D>,
 ) -> Result<WallElements<D>, LatticeError> {
-    if !support.is_finite() || support <= 0.0 {
-        return Err(LatticeError::Support { support });
-    }
     let spacing = lattice.spacing();
-    let free = free_cells(solids, lattice, domain)?;
-    let reach = Reach::new(support / spacing, domain.periodic);
     let margin = ON_SURFACE * spacing;
-    let around = domain.cells(lattice, support)?;
     // Half the diagonal of a cell: the surface may cut a cell whose middle is so far from it.
     let half = 0.5 * spacing * (D as f64).sqrt();
-    let layer = LatticeRuns::trace(*lattice, around, |x| {
-        let depth = depth_in_solids(solids, x);
-        (margin - half - depth).max(depth - support + margin)
-    });
+    let layer = Layer::trace(solids, lattice, support, domain, margin - half)?;
     let mut elements = WallElements::default();
-    for index in layer.indices().filter(|index| free.is_near(index, &reach)) {
+    for index in layer.near_fluid() {
         let center = lattice.point(&index);
         let Some((position, share)) = material(solids, &center, spacing, half, margin) else {
             continue;
         };
-        let depth = |k: usize| solids[k].depth_in_solid(&position);
-        let deepest = (0..solids.len()).reduce(|a, b| if depth(b) > depth(a) { b } else { a });
-        let Some(owner) = deepest else { continue };
+        let mut deepest = (f64::NEG_INFINITY, None);
+        for (k, solid) in solids.iter().enumerate() {
+            let depth = solid.depth_above(&position, deepest.0);
+            if depth > deepest.0 {
+                deepest = (depth, Some(k));
+            }
+        }
+        let Some(owner) = deepest.1 else { continue };
         elements.positions.push(position);
         elements.volumes.push(share * spacing.powi(D as i32));
         elements.solids.push(owner as u32);
-        elements.normals.push(solids[owner].normal(&position));
-        elements.depths.push(depth(owner));
+        let (depth, normal) = solids[owner].depth_and_normal(&position);
+        elements.normals.push(normal);
+        elements.depths.push(depth);
     }
     Ok(elements)
 }
@@ -89,7 +86,7 @@ fn material<const D: usize>(
     half: f64,
     margin: f64,
 ) -> Option<([f64; D], f64)> {
-    let depths: Vec<f64> = solids.iter().map(|solid| solid.depth_in_solid(center)).collect();
+    let depths: Vec<f64> = solids.iter().map(|solid| solid.depth_above(center, -half)).collect();
     if depths.iter().any(|depth| *depth >= half - margin) {
         return Some((*center, 1.0));
     }

@@ -41,6 +41,19 @@ impl BoxMesh {
         self
     }
 
+    /// Turns all triangles over: inside and outside are exchanged.
+    #[must_use]
+    pub fn inside_out(mut self) -> Self {
+        self.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+        self
+    }
+
+    /// Both boxes in one file.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        Self { triangles: [&self.triangles[..], &other.triangles].concat() }
+    }
+
     /// Writes the mesh.
     ///
     /// # Panics

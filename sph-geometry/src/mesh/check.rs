@@ -1,6 +1,7 @@
 //! Whether a mesh is a closed, consistently oriented surface.
 
-use super::{MeshError, TriangleMesh, is_collapsed};
+use super::sets::Sets;
+use super::{MeshError, TriangleMesh, is_collapsed, sides};
 use crate::aabb::Aabb;
 use crate::vector::{add_scaled, cross, dot, norm, scaled, sub};
 use std::fmt;
@@ -9,6 +10,8 @@ use std::fmt;
 const PLACES: usize = 5;
 /// A triangle is degenerate when its height is below this fraction of its longest edge.
 const THINNEST: f64 = 1e-9;
+/// A surface encloses nothing when its volume is below this fraction of its area to the power 3/2.
+pub(super) const NO_VOLUME: f64 = 1e-12;
 
 /// Places where something is wrong.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -22,11 +25,11 @@ pub struct Defects {
 }
 
 impl Defects {
-    fn new(kind: &'static str) -> Self {
+    pub(super) fn new(kind: &'static str) -> Self {
         Self { kind, ..Self::default() }
     }
 
-    fn add(&mut self, place: [f64; 3]) {
+    pub(super) fn add(&mut self, place: [f64; 3]) {
         self.count += 1;
         if self.places.len() < PLACES {
             self.places.push(place);
@@ -71,6 +74,8 @@ pub struct MeshReport {
     /// Volume in m³, negative when the surface is inside out. Means something only for closed,
     /// consistently oriented surfaces.
     pub volume: f64,
+    /// Volume of all shells in m³, whichever way each faces.
+    pub enclosed: f64,
     /// Area, m².
     pub area: f64,
     /// The smallest box around all vertices.
@@ -105,7 +110,7 @@ impl MeshReport {
             Some(MeshError::Crowded { edges: self.crowded_edges.clone() })
         } else if !self.inconsistent_edges.is_empty() {
             Some(MeshError::Inconsistent { edges: self.inconsistent_edges.clone() })
-        } else if self.volume.abs() <= 1e-12 * self.area.powf(1.5) {
+        } else if self.enclosed <= NO_VOLUME * self.area.powf(1.5) {
             Some(MeshError::NoVolume)
         } else {
             None
@@ -128,6 +133,7 @@ pub fn check(mesh: &TriangleMesh) -> Result<MeshReport, MeshError> {
         degenerate_triangles: Defects::new("triangle"),
         duplicate_triangles: Defects::new("triangle"),
         volume: 0.0,
+        enclosed: 0.0,
         area: 0.0,
         bounding_box: mesh.bounding_box(),
     };
@@ -137,7 +143,7 @@ pub fn check(mesh: &TriangleMesh) -> Result<MeshReport, MeshError> {
     Ok(report)
 }
 
-fn middle(mesh: &TriangleMesh, triangle: usize) -> [f64; 3] {
+pub(super) fn middle(mesh: &TriangleMesh, triangle: usize) -> [f64; 3] {
     let [a, b, c] = mesh.corners(triangle);
     scaled(1.0 / 3.0, &add_scaled(&add_scaled(&a, 1.0, &b), 1.0, &c))
 }
@@ -155,8 +161,14 @@ fn measure(mesh: &TriangleMesh, report: &mut MeshReport) {
             report.degenerate_triangles.add(middle(mesh, triangle));
         }
         report.area += 0.5 * twice_area;
-        report.volume += dot(&a, &cross(&b, &c)) / 6.0;
+        report.volume += wedge(mesh, triangle, &report.bounding_box.min);
     }
+}
+
+/// Volume between a triangle and a point, m³.
+pub(super) fn wedge(mesh: &TriangleMesh, triangle: usize, point: &[f64; 3]) -> f64 {
+    let [a, b, c] = mesh.corners(triangle).map(|x| sub(&x, point));
+    dot(&a, &cross(&b, &c)) / 6.0
 }
 
 fn duplicates(mesh: &TriangleMesh, report: &mut MeshReport) {
@@ -175,61 +187,30 @@ fn duplicates(mesh: &TriangleMesh, report: &mut MeshReport) {
     }
 }
 
-/// One side of a triangle: its ends in ascending order, whether the triangle runs through them in
-/// that order, and the triangle.
-type Side = ([u32; 2], bool, usize);
-
 fn edges(mesh: &TriangleMesh, report: &mut MeshReport) {
-    let mut sides: Vec<Side> = Vec::with_capacity(3 * mesh.triangles.len());
-    for (triangle, corners) in mesh.triangles.iter().enumerate() {
-        if is_collapsed(corners) {
-            continue;
-        }
-        for k in 0..3 {
-            let [a, b] = [corners[k], corners[(k + 1) % 3]];
-            sides.push(([a.min(b), a.max(b)], a < b, triangle));
-        }
-    }
-    sides.sort_unstable();
-    let mut shells = Shells::new(mesh.triangles.len());
-    for edge in sides.chunk_by(|a, b| a.0 == b.0) {
-        let [a, b] = edge[0].0.map(|vertex| mesh.vertices[vertex as usize]);
+    let sides = sides::sorted(mesh);
+    let mut shells = Sets::new(mesh.triangles.len());
+    for edge in sides.chunk_by(|a, b| a.ends == b.ends) {
+        let [a, b] = edge[0].ends.map(|vertex| mesh.vertices[vertex as usize]);
         let place = scaled(0.5, &add_scaled(&a, 1.0, &b));
         match edge {
             [_] => report.open_edges.add(place),
-            [(_, one, _), (_, other, _)] if one == other => report.inconsistent_edges.add(place),
+            [one, other] if one.forward == other.forward => report.inconsistent_edges.add(place),
             [_, _] => {}
             _ => report.crowded_edges.add(place),
         }
         for pair in edge.windows(2) {
-            shells.join(pair[0].2, pair[1].2);
+            shells.join(pair[0].triangle, pair[1].triangle);
         }
     }
+    let mut volumes = vec![0.0; mesh.triangles.len()];
+    for triangle in 0..mesh.triangles.len() {
+        volumes[shells.root(triangle)] += wedge(mesh, triangle, &report.bounding_box.min);
+    }
+    report.enclosed = volumes.iter().map(|volume| volume.abs()).sum();
     report.shells = (0..mesh.triangles.len())
         .filter(|&t| !is_collapsed(&mesh.triangles[t]) && shells.root(t) == t)
         .count();
-}
-
-/// Sets of connected triangles (union-find with path halving).
-struct Shells(Vec<usize>);
-
-impl Shells {
-    fn new(count: usize) -> Self {
-        Self((0..count).collect())
-    }
-
-    fn root(&mut self, mut triangle: usize) -> usize {
-        while self.0[triangle] != triangle {
-            self.0[triangle] = self.0[self.0[triangle]];
-            triangle = self.0[triangle];
-        }
-        triangle
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let [a, b] = [self.root(a), self.root(b)];
-        self.0[a.max(b)] = a.min(b);
-    }
 }
 
 #[cfg(test)]

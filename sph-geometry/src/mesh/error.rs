@@ -17,7 +17,7 @@ pub enum MeshError {
         source: std::io::Error,
     },
     /// The file is no mesh file that can be read, or a broken one.
-    #[error("the mesh {path} cannot be read: {reason}; export the surface again as STL, OBJ or PLY", path = path.display())]
+    #[error("the mesh {path} cannot be read: {reason}; export the surface again as STL, OBJ, PLY or VTK", path = path.display())]
     Format {
         /// The file.
         path: PathBuf,
@@ -56,7 +56,7 @@ pub enum MeshError {
     /// The surface has holes.
     #[error(
         "the mesh is open: {edges} belong to only one triangle; fill the holes in a mesh editor, \
-         or give the sheet a thickness"
+         or give the surface a `thickness` in metres: material on both sides of it"
     )]
     Open {
         /// Edges of the holes.
@@ -89,7 +89,7 @@ pub enum MeshError {
         triangles: Defects,
     },
     /// The surface encloses nothing.
-    #[error("the mesh encloses no volume; give the sheet a thickness")]
+    #[error("the mesh encloses no volume; give the sheet a `thickness` in metres")]
     NoVolume,
     /// Vertices are too many for 32-bit indices.
     #[error("the mesh has {count} vertices; the most is 4294967295, so simplify it")]

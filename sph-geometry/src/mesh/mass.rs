@@ -1,6 +1,6 @@
 //! Mass, centre and inertia of a solid bounded by a mesh.
 
-use super::{MeshError, TriangleMesh, check, is_collapsed};
+use super::{MeshError, TriangleMesh, bodies};
 use crate::vector::sub;
 use nalgebra::{Matrix3, Vector3};
 use parry3d_f64::math::Vector;
@@ -20,23 +20,26 @@ pub struct MassProperties {
 
 /// Mass properties of what a closed mesh encloses. `density` in kg/m³.
 ///
-/// The inertia is the sum over the tetrahedra between the centre and each triangle; shells that
-/// face inwards count as hollows. Fails as [`MeshReport::error`](super::MeshReport::error) says.
+/// The inertia is the sum over the tetrahedra between the centre and each triangle. What is a body and
+/// what a cavity is as [`bodies`] says; where bodies overlap, each counts. Fails as
+/// [`MeshReport::error`](super::MeshReport::error) says.
 pub fn mass_properties(mesh: &TriangleMesh, density: f64) -> Result<MassProperties, MeshError> {
-    let report = check(mesh)?;
-    if let Some(error) = report.error() {
-        return Err(error);
+    let found = bodies(mesh)?;
+    let mut all = TriangleMesh::default();
+    for surface in &found.surfaces {
+        all.append(surface, false)?;
     }
     // Relative to the box of the mesh, so that the distance from the origin costs no digits.
-    let origin = report.bounding_box.min;
+    let origin = all.bounding_box().min;
     let local = |x: &[f64; 3]| Vector::from_array(sub(x, &origin));
-    let vertices: Vec<Vector> = mesh.vertices.iter().map(local).collect();
-    let triangles: Vec<[u32; 3]> =
-        mesh.triangles.iter().filter(|t| !is_collapsed(t)).copied().collect();
-    let parry =
-        parry3d_f64::mass_properties::MassProperties::from_trimesh(density, &vertices, &triangles);
+    let vertices: Vec<Vector> = all.vertices.iter().map(local).collect();
+    let parry = parry3d_f64::mass_properties::MassProperties::from_trimesh(
+        density,
+        &vertices,
+        &all.triangles,
+    );
     let inertia = parry.reconstruct_inertia_matrix();
-    let volume = report.volume.abs();
+    let volume = found.volume;
     Ok(MassProperties {
         volume,
         mass: density * volume,
@@ -75,6 +78,18 @@ mod tests {
         assert!((found.volume - 63.0).abs() < 1e-12);
         let center = (64.0 * 2.0 - 1.5) / 63.0;
         assert!((found.center - Vector3::repeat(center)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn bodies_inside_out_beside_others_have_their_mass() {
+        let mut mesh = TriangleMesh::cuboid([0.0; 3], [1.0; 3]);
+        mesh.append(&TriangleMesh::cuboid([3.0, 0.0, 0.0], [4.0, 1.0, 1.0]), true).unwrap();
+        let found = mass_properties(&mesh, 2.0).unwrap();
+        assert!((found.mass - 4.0).abs() < 1e-12);
+        assert!((found.center - Vector3::new(2.0, 0.5, 0.5)).norm() < 1e-12);
+        // Two cubes of mass 2 that are 1.5 away from the centre: 2 · (1/3 + 4.5). Two equal principal
+        // moments cost half of the digits.
+        assert!((found.inertia[(1, 1)] - (2.0 / 3.0 + 9.0)).abs() < 1e-6, "{}", found.inertia);
     }
 
     #[test]

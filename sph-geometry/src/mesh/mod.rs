@@ -1,19 +1,27 @@
 //! Triangle meshes: surfaces from files.
 
+mod bodies;
 mod check;
 mod error;
 mod import;
 mod make;
 mod mass;
+mod repair;
+mod sets;
+mod sides;
 mod stl;
 mod weld;
 
+pub use bodies::{Bodies, bodies};
 pub use check::{Defects, MeshReport, check};
 pub use error::MeshError;
 pub use import::{MeshFile, MeshFormat};
 pub use mass::{MassProperties, mass_properties};
+pub use repair::{Repaired, Repairs, repaired};
 
 use crate::aabb::Aabb;
+use crate::affine::Affine;
+use parry3d_f64::math::Vector;
 
 /// A surface made of triangles that share vertices. Seen from outside, the corners of a triangle
 /// run counter-clockwise.
@@ -44,6 +52,29 @@ impl TriangleMesh {
     pub fn flipped(&self) -> Self {
         let triangles = self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
         Self { vertices: self.vertices.clone(), triangles }
+    }
+
+    /// The mesh scaled, rotated and translated; where the map mirrors, triangles are turned so that
+    /// the outside stays outside.
+    #[must_use]
+    pub fn moved(&self, map: &Affine<3>) -> Self {
+        let vertices = self.vertices.iter().map(|x| map.apply(x)).collect();
+        let moved = Self { vertices, triangles: self.triangles.clone() };
+        if map.determinant() < 0.0 { moved.flipped() } else { moved }
+    }
+
+    /// The convex hull of all vertices.
+    ///
+    /// # Errors
+    ///
+    /// When there are no triangles, or all vertices lie in a plane.
+    pub fn convex_hull(&self) -> Result<Self, MeshError> {
+        self.validate()?;
+        let points: Vec<Vector> = self.vertices.iter().map(|x| Vector::from_array(*x)).collect();
+        let (vertices, triangles) = parry3d_f64::transformation::try_convex_hull(&points)
+            .map_err(|_| MeshError::NoVolume)?;
+        let vertices = vertices.iter().map(Vector::to_array).collect();
+        Ok(Self { vertices, triangles })
     }
 
     /// Finite vertices and indices that exist: what everything else here relies on.

@@ -15,6 +15,10 @@ impl<const D: usize> Union<D> {
         if shapes.is_empty() { Err(ShapeError::EmptyUnion) } else { Ok(Self(shapes)) }
     }
 
+    pub fn shapes(&self) -> &[Shape<D>] {
+        &self.0
+    }
+
     pub fn signed_distance(&self, x: &[f64; D]) -> f64 {
         self.0.iter().map(|shape| shape.signed_distance(x)).fold(f64::INFINITY, f64::min)
     }
@@ -42,6 +46,10 @@ pub struct Difference<const D: usize> {
 impl<const D: usize> Difference<D> {
     pub fn new(first: Shape<D>, others: Vec<Shape<D>>) -> Self {
         Self { first, others }
+    }
+
+    pub fn shapes(&self) -> (&Shape<D>, &[Shape<D>]) {
+        (&self.first, &self.others)
     }
 
     pub fn signed_distance(&self, x: &[f64; D]) -> f64 {

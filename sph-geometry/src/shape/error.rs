@@ -68,6 +68,24 @@ pub enum ShapeError {
     /// A polygon without area.
     #[error("all corners of a polygon are on one line; move one corner off it")]
     NoArea,
+    /// Different scales along different axes, for a shape that would be no such shape any more.
+    #[error(
+        "a {shape} cannot be scaled differently along different axes; give one number as the scale, \
+         or use a mesh or a polygon"
+    )]
+    Stretched {
+        /// The shape.
+        shape: &'static str,
+    },
+    /// A scale of zero.
+    #[error("a shape scaled to nothing; give a scale that is a finite number and not 0")]
+    Flattened,
+    /// A thickness that is not positive.
+    #[error("the thickness of a sheet is {thickness}; give a positive length in metres")]
+    Thickness {
+        /// The thickness, m.
+        thickness: f64,
+    },
     /// A combination of nothing.
     #[error("a union of no shapes; give one or more")]
     EmptyUnion,

@@ -7,9 +7,9 @@
 //! weighted pseudonormal, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243–253,
 //! doi:10.1109/TVCG.2005.49).
 
-use super::{Nearest, ShapeError};
+use super::Nearest;
 use crate::aabb::Aabb;
-use crate::mesh::{MeshError, TriangleMesh, check, is_collapsed};
+use crate::mesh::{MeshError, TriangleMesh, is_collapsed};
 use crate::vector::{axis, scaled, sub};
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQueryWithLocation;
@@ -27,12 +27,9 @@ impl std::fmt::Debug for MeshSurface {
 }
 
 impl MeshSurface {
-    pub fn new(mesh: &TriangleMesh) -> Result<Self, ShapeError> {
-        let report = check(mesh)?;
-        if let Some(error) = report.error() {
-            return Err(error.into());
-        }
-        let turned = report.is_inside_out();
+    /// A closed, consistently oriented surface, with inside and outside exchanged if `turned`. Shells in
+    /// it must not meet, nor share vertices.
+    pub fn closed(mesh: &TriangleMesh, turned: bool, aabb: Aabb<3>) -> Result<Self, MeshError> {
         let triangles = mesh
             .triangles
             .iter()
@@ -42,7 +39,15 @@ impl MeshSurface {
         let vertices = mesh.vertices.iter().map(|x| Vector::from_array(*x)).collect();
         let mesh = TriMesh::with_flags(vertices, triangles, TriMeshFlags::ORIENTED)
             .map_err(|_| MeshError::Empty)?;
-        Ok(Self { mesh, aabb: report.bounding_box })
+        Ok(Self { mesh, aabb })
+    }
+
+    /// The surface with its points moved.
+    pub fn mesh(&self, moved: impl Fn([f64; 3]) -> [f64; 3]) -> TriangleMesh {
+        TriangleMesh {
+            vertices: self.mesh.vertices().iter().map(|x| moved(x.to_array())).collect(),
+            triangles: self.mesh.indices().to_vec(),
+        }
     }
 
     /// The nearest point of the surface, whether `x` is inside, and the triangle.

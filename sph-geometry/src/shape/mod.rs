@@ -3,18 +3,22 @@
 mod combination;
 mod error;
 mod mesh_surface;
+mod moved;
 mod polygon_surface;
 mod primitive;
+mod sheet;
 
 pub use error::ShapeError;
 
 use crate::aabb::Aabb;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{Bodies, MeshError, TriangleMesh, bodies};
 use crate::vector::{add_scaled, resized};
 use combination::{Difference, Union};
-use mesh_surface::MeshSurface;
+pub(crate) use mesh_surface::MeshSurface;
+use moved::Moved;
 use polygon_surface::PolygonSurface;
 use primitive::{Ball, Capsule, Cuboid, Cylinder, HalfSpace};
+use sheet::Sheet;
 use std::sync::Arc;
 
 /// A set of points in D dimensions: a primitive, what a closed surface bounds, or a combination.
@@ -36,9 +40,12 @@ enum Kind<const D: usize> {
     Polygon(Arc<PolygonSurface>),
     /// Only for D = 3: `mesh` makes no other.
     Mesh(Arc<MeshSurface>),
+    /// Only for D = 3: `sheet` makes no other.
+    Sheet(Arc<Sheet>),
     Union(Arc<Union<D>>),
     Difference(Arc<Difference<D>>),
     Custom(Arc<dyn SignedDistance<D>>),
+    Moved(Arc<Moved<D>>),
 }
 
 /// A set of points that a program defines itself; becomes a shape by [`Shape::custom`].
@@ -79,8 +86,10 @@ macro_rules! each_kind {
             Kind::Union($one) => $plain,
             Kind::Difference($one) => $plain,
             Kind::Custom($one) => $plain,
+            Kind::Moved($one) => $plain,
             Kind::Polygon($surface) => $resized,
             Kind::Mesh($surface) => $resized,
+            Kind::Sheet($surface) => $resized,
         }
     };
 }
@@ -121,13 +130,50 @@ impl<const D: usize> Shape<D> {
         PolygonSurface::new(&corners).map(|shape| Self(Kind::Polygon(Arc::new(shape))))
     }
 
-    /// The inside of a closed, consistently oriented surface; three dimensions only. A surface
-    /// that is inside out is turned over.
+    /// The inside of a closed, consistently oriented surface; three dimensions only. Its shells are
+    /// oriented by their nesting, and bodies that overlap are united, as [`bodies`](crate::bodies)
+    /// says.
     pub fn mesh(mesh: &TriangleMesh) -> Result<Self, ShapeError> {
+        Self::bodies(&bodies(mesh)?)
+    }
+
+    /// The bodies of a mesh; three dimensions only. The distance is exact where no bodies overlap.
+    pub fn bodies(bodies: &Bodies) -> Result<Self, ShapeError> {
         if D != 3 {
             return Err(ShapeError::Dimension { shape: "mesh", needed: 3, found: D });
         }
-        MeshSurface::new(mesh).map(|shape| Self(Kind::Mesh(Arc::new(shape))))
+        let surfaces = bodies.surfaces.iter().map(|mesh| Self::surface(mesh, false));
+        let mut shapes = surfaces.collect::<Result<Vec<_>, _>>()?;
+        match shapes.pop() {
+            Some(only) if shapes.is_empty() => Ok(only),
+            Some(last) => {
+                shapes.push(last);
+                Self::union(shapes)
+            }
+            None => Err(MeshError::Empty.into()),
+        }
+    }
+
+    /// All points closer than half a thickness (m) to a surface, which may have holes; three
+    /// dimensions only.
+    pub fn sheet(mesh: &TriangleMesh, thickness: f64) -> Result<Self, ShapeError> {
+        if D != 3 {
+            return Err(ShapeError::Dimension { shape: "mesh", needed: 3, found: D });
+        }
+        if !thickness.is_finite() || thickness <= 0.0 {
+            return Err(ShapeError::Thickness { thickness });
+        }
+        Ok(Self(Kind::Sheet(Arc::new(Sheet::new(mesh, thickness)?))))
+    }
+
+    /// The inside of a closed surface whose shells do not meet.
+    fn surface(mesh: &TriangleMesh, turned: bool) -> Result<Self, ShapeError> {
+        let surface = MeshSurface::closed(mesh, turned, mesh.bounding_box())?;
+        Ok(Self(Kind::Mesh(Arc::new(surface))))
+    }
+
+    fn of_moved(moved: Moved<D>) -> Self {
+        Self(Kind::Moved(Arc::new(moved)))
     }
 
     /// What is in any of the shapes.

@@ -53,6 +53,11 @@ impl PolygonSurface {
         Ok(Self { edges, aabb })
     }
 
+    /// Its corners in order.
+    pub fn corners(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.edges.vertices().iter().map(Vector::to_array)
+    }
+
     fn project(&self, x: &[f64; 2]) -> ([f64; 2], bool, u32) {
         let (projection, (edge, _)) =
             self.edges.project_local_point_and_get_location(Vector::from_array(*x), false);

@@ -59,6 +59,14 @@ impl<const D: usize> Ball<D> {
         Ok(Self { center, radius })
     }
 
+    pub fn center(&self) -> [f64; D] {
+        self.center
+    }
+
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     pub fn signed_distance(&self, x: &[f64; D]) -> f64 {
         norm(&sub(x, &self.center)) - self.radius
     }
@@ -128,6 +136,14 @@ impl<const D: usize> Cylinder<D> {
         Ok(Self { axis, radius })
     }
 
+    pub fn ends(&self) -> [[f64; D]; 2] {
+        self.axis.ends()
+    }
+
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     /// A cylinder is a rectangle in the plane of distance from the axis and height.
     fn profile(&self) -> Aabb<2> {
         let Self { axis, radius } = self;
@@ -172,6 +188,14 @@ impl<const D: usize> Capsule<D> {
         Ok(Self { axis, radius })
     }
 
+    pub fn ends(&self) -> [[f64; D]; 2] {
+        self.axis.ends()
+    }
+
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
     pub fn signed_distance(&self, x: &[f64; D]) -> f64 {
         self.nearest(x).distance
     }
@@ -210,6 +234,14 @@ impl<const D: usize> HalfSpace<D> {
             return Err(ShapeError::NoDirection);
         }
         Ok(Self { point, normal: scaled(1.0 / length, &normal) })
+    }
+
+    pub fn point(&self) -> [f64; D] {
+        self.point
+    }
+
+    pub fn normal(&self) -> [f64; D] {
+        self.normal
     }
 
     pub fn signed_distance(&self, x: &[f64; D]) -> f64 {

@@ -146,7 +146,7 @@ pub enum ErrorKind {
         /// What to do.
         help: String,
     },
-    /// Fluid inside a solid.
+    /// Fluid inside a solid, and none anywhere else.
     #[error(
         "region {region} of fluid `{fluid}` overlaps solid `{solid}`: {count} particles would be \
          inside it, the first at {example:?}"
@@ -222,9 +222,11 @@ impl ErrorKind {
             | Self::Invalid { help, .. }
             | Self::Mesh { help, .. }
             | Self::Nothing { help, .. } => help.clone(),
-            Self::Overlap { .. } => "move or shrink the region, cut the solid out of it with \
-                                     `difference`, or check `fluid_side` of the solid"
-                .into(),
+            Self::Overlap { .. } => {
+                "no particle is left: move the region out of the solid, or check \
+                                     `fluid_side` of the solid"
+                    .into()
+            }
             Self::TooManyRanks { particles, .. } => {
                 format!("use at most {particles} ranks, or a smaller numerics.spacing")
             }

@@ -28,16 +28,43 @@ macro_rules! with_shape_keys {
             pub plane: Option<At<$crate::scene::shape::PlaneKeys>>,
             /// Corners of a simple polygon in either direction; two dimensions only.
             pub polygon: Option<At<Vec<At<Vec<f64>>>>>,
-            /// A closed surface in an STL, OBJ or PLY file, relative to the folder of the scene; three dimensions
-            /// only.
+            /// A closed surface in an STL, OBJ, PLY or VTK file, relative to the folder of the scene; three
+            /// dimensions only. Several bodies in it are united; one inside another that faces the other way is a cavity.
             pub mesh: Option<At<std::path::PathBuf>>,
             /// Everything that is in any of these shapes.
             pub union: Option<At<Vec<At<$crate::scene::shape::ShapeKeys>>>>,
             /// What is in the first of these shapes and in none of the others.
             pub difference: Option<At<Vec<At<$crate::scene::shape::ShapeKeys>>>>,
+            /// Unit of length of the mesh; metres when absent.
+            pub units: Option<At<$crate::scene::placing::Units>>,
+            /// Scales the shape from the origin, before anything else: a number or one for each axis.
+            /// Different ones suit boxes, planes, polygons and meshes only.
+            pub scale: Option<At<$crate::scene::placing::Scale>>,
+            /// Rotates the shape about the origin, after `scale`: { axis = [0, 0, 1], degrees = 30 }, in two
+            /// dimensions just the degrees.
+            pub rotate: Option<At<$crate::scene::placing::Rotation>>,
+            /// Moves the shape by so much, m, after `scale` and `rotate`.
+            pub translate: Option<At<Vec<f64>>>,
+            /// Takes the mesh as a sheet of this thickness, m, with material on both sides of its surface,
+            /// which may have holes.
+            pub thickness: Option<At<f64>>,
+            /// Takes the convex hull of the mesh instead of the mesh, which may then have holes.
+            pub convex_hull: Option<At<bool>>,
         }
 
         impl $name {
+            /// How the shape is placed.
+            pub fn placing(&self) -> $crate::scene::placing::Placing<'_> {
+                $crate::scene::placing::Placing {
+                    units: self.units.as_ref(),
+                    scale: self.scale.as_ref(),
+                    rotate: self.rotate.as_ref(),
+                    translate: self.translate.as_ref(),
+                    thickness: self.thickness.as_ref(),
+                    convex_hull: self.convex_hull.as_ref(),
+                }
+            }
+
             /// The shapes given, of which there should be exactly one.
             pub fn shapes(&self) -> Vec<$crate::scene::shape::Shape<'_>> {
                 use $crate::scene::shape::Shape;

@@ -2,7 +2,7 @@
 
 use super::report::MeshSummary;
 use super::shapes::Shapes;
-use super::{domain, fluid_box, lattice_error, regions, walls};
+use super::{domain, fluid_box, lattice_error, regions, sizes, walls};
 use crate::scene::{ErrorKind, Scene, SceneError};
 use sph_geometry::{Aabb, Lattice, Shape, Solid};
 
@@ -20,6 +20,8 @@ pub struct Geometry<const D: usize> {
     /// The box that particles may be in, m.
     pub domain: Aabb<D>,
     pub(super) meshes: Vec<MeshSummary>,
+    /// What deserves a look about the meshes.
+    pub(super) notes: Vec<String>,
 }
 
 impl<const D: usize> Geometry<D> {
@@ -40,12 +42,15 @@ impl<const D: usize> Geometry<D> {
         let mut shapes = Shapes::new(scene);
         let solids = walls::solids(scene, &mut shapes)?;
         let regions = regions(fluid_name, fluid, &mut shapes)?;
-        let fluid_box = fluid_box(scene, fluid, &regions, bytes)?;
+        sizes::check(scene, &solids, &regions, &shapes.meshes)?;
+        let fluid_box = fluid_box(scene, fluid, &regions, bytes)
+            .map_err(|error| sizes::explain(error, scene, &solids, &regions, &shapes.meshes))?;
         let lattice = Lattice::new(regions[0].bounding_box().min, *numerics.spacing)
             .map_err(|error| lattice_error(scene, numerics.spacing.place, &error))?;
         let support = *numerics.spacing * *numerics.support;
         let domain = domain::domain(scene, &solids, &fluid_box, support);
-        Ok(Self { solids, regions, fluid_box, lattice, domain, meshes: shapes.meshes })
+        let Shapes { meshes, notes, .. } = shapes;
+        Ok(Self { solids, regions, fluid_box, lattice, domain, meshes, notes })
     }
 
     /// Support radius of a scene, m.

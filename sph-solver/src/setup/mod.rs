@@ -16,10 +16,13 @@ mod neighbours;
 mod notes;
 mod overlap;
 mod particles;
+mod placed;
 mod positions;
 mod report;
 mod sampling;
 mod shapes;
+mod sizes;
+mod thickness;
 mod volume;
 mod walls;
 
@@ -58,7 +61,7 @@ pub struct Setup<const D: usize> {
     pub initial_speed: f64,
     /// Volume of the regions of fluid, m³ (m² in two dimensions).
     pub volume_of_regions: f64,
-    notes_on_probes: Vec<String>,
+    notes_on_geometry: Vec<String>,
     meshes: Vec<MeshSummary>,
 }
 
@@ -71,21 +74,25 @@ const LARGEST: &str = "4.2e9 is the most";
 impl<const D: usize> Setup<D> {
     /// Makes particles and constants. Reads the meshes that the scene names.
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
-        let Geometry { solids, regions, fluid_box, lattice, domain, meshes } =
+        let Geometry { solids, regions, fluid_box, lattice, domain, meshes, mut notes } =
             Geometry::<D>::read(scene, Some(memory::to_set_up::<D>(1.0)))?;
         let (fluid_name, fluid) = scene.fluid()?;
         let numerics = &scene.numerics;
         let spacing = *numerics.spacing;
-        let (position, ends) = fill(scene, fluid, &regions, &lattice)?;
-        overlap::check(scene, fluid_name, fluid, &solids, &position, &ends)?;
+        let (mut position, mut ends) = fill(scene, fluid, &regions, &lattice)?;
+        notes.extend(
+            overlap::give_way(scene, fluid_name, fluid, &solids, &mut position, &mut ends)
+                .map_err(|error| sizes::explain(error, scene, &solids, &regions, &meshes))?,
+        );
         if position.is_empty() {
-            return Err(nothing(scene, fluid));
+            let error = nothing(scene, fluid);
+            return Err(sizes::explain(error, scene, &solids, &regions, &meshes));
         }
         let position = jitter::shifted(fluid, spacing, position);
         let filling = Filling::new(scene, fluid, position, ends)?;
         domain::check(scene, fluid, &domain, &filling.position)?;
         let support = Geometry::<D>::support(scene);
-        let notes_on_probes = notes::on_probes(scene, &domain, &solids, &filling.position, support);
+        notes.extend(notes::on_probes(scene, &domain, &solids, &filling.position, support));
         let gravity = scene.gravity();
         let initial_speed = filling.largest_speed();
         let expected_speed = expected_speed(&gravity, height(&gravity, &fluid_box), initial_speed);
@@ -122,15 +129,18 @@ impl<const D: usize> Setup<D> {
         };
         let mass = density0 * spacing.powi(D as i32);
         let mut particles = filling.finish(scene, fluid, &equation_of_state, &lattice, mass)?;
-        walls::add_walls(scene, &solids, &lattice, &constants, &mut particles)?;
+        walls::add_walls(scene, &solids, &lattice, &constants, &mut particles)
+            .map_err(|error| sizes::explain(error, scene, &solids, &regions, &meshes))?;
+        sizes::without_particles(scene, &solids, &regions, &meshes, &domain, &particles)?;
+        notes.extend(thickness::notes(scene, &solids, &domain, &particles));
         Ok(Self {
             particles,
             constants,
             solids: walls::models(scene, &solids),
             expected_speed,
             initial_speed,
-            volume_of_regions: volume::of_regions(&regions),
-            notes_on_probes,
+            volume_of_regions: volume::of_regions(&regions, &solids),
+            notes_on_geometry: notes,
             meshes,
         })
     }
@@ -160,7 +170,7 @@ fn regions<const D: usize>(
 ) -> Result<Vec<sph_geometry::Shape<D>>, SceneError> {
     let make = |(index, region): (usize, &At<Region>)| {
         let user = format!("region {index} of {name}");
-        shapes.only(&user, region.place, &region.shapes())
+        shapes.only(&user, region.place, &region.shapes(), &region.placing())
     };
     fluid.regions.iter().enumerate().map(make).collect()
 }

@@ -44,7 +44,7 @@ impl<const D: usize> Setup<D> {
             let [needed, free] = [needed, free].map(memory::gibibytes);
             notes.push(format!("a run needs about {needed}, and {free} are free here"));
         }
-        notes.extend_from_slice(&self.notes_on_probes);
+        notes.extend_from_slice(&self.notes_on_geometry);
         notes
     }
 

@@ -24,8 +24,8 @@ impl<const D: usize> Positions<D> {
     pub fn new(scene: &Scene, geometry: &Geometry<D>) -> Result<Self, SceneError> {
         let (name, fluid) = scene.fluid()?;
         let Geometry { solids, regions, lattice, .. } = geometry;
-        let (mut position, ends) = fill(scene, fluid, regions, lattice)?;
-        overlap::check(scene, name, fluid, solids, &position, &ends)?;
+        let (mut position, mut ends) = fill(scene, fluid, regions, lattice)?;
+        overlap::give_way(scene, name, fluid, solids, &mut position, &mut ends)?;
         if position.is_empty() {
             return Err(nothing(scene, fluid));
         }

@@ -1,8 +1,8 @@
 //! Blocks of the lattice instead of particles, for fields that do not fit into memory.
 
-use super::{Geometry, lattice_error, nothing, too_many, walls};
+use super::{Geometry, lattice_error, nothing, overlap, too_many, walls};
 use crate::scene::{Scene, SceneError};
-use sph_geometry::{Lattice, Shape};
+use sph_geometry::{Lattice, Shape, Solid};
 use std::collections::HashSet;
 
 /// What a block stands for.
@@ -69,7 +69,7 @@ impl<const D: usize> Sample<D> {
         }
         let mut sample = Self { side, blocks: Vec::new(), wall_density: 1.0 };
         for index in 0..geometry.regions.len() {
-            sample.add_region(&geometry.lattice, &geometry.regions[..=index]);
+            sample.add_region(&geometry.lattice, &geometry.regions[..=index], &geometry.solids);
         }
         if sample.blocks.is_empty() {
             return Err(nothing(scene, fluid));
@@ -96,9 +96,11 @@ impl<const D: usize> Sample<D> {
         chosen.map(|(first, end, _)| points(first, end)).sum()
     }
 
-    /// Adds the blocks of the last of `regions` that are in none of the earlier ones.
-    fn add_region(&mut self, lattice: &Lattice<D>, regions: &[Shape<D>]) {
+    /// Adds the blocks of the last of `regions` that are in none of the earlier ones and in no solid.
+    fn add_region(&mut self, lattice: &Lattice<D>, regions: &[Shape<D>], solids: &[Solid<D>]) {
         let Some((region, earlier)) = regions.split_last() else { return };
+        let solids: Vec<Solid<D>> =
+            solids.iter().filter(|solid| overlap::may_meet(solid, region)).cloned().collect();
         let bounds = region.bounding_box();
         let (origin, spacing) = (lattice.origin(), lattice.spacing());
         // Points on the surface are not inside, as for particles.
@@ -114,7 +116,10 @@ impl<const D: usize> Sample<D> {
             let to: [i32; D] = std::array::from_fn(|k| ((cell[k] + 1) * self.side).min(end[k]));
             let middle =
                 std::array::from_fn(|k| origin[k] + 0.5 * f64::from(from[k] + to[k]) * spacing);
-            let taken = || earlier.iter().any(|shape| shape.contains(&middle));
+            let taken = || {
+                earlier.iter().any(|shape| shape.contains(&middle))
+                    || !overlap::is_free(&solids, &middle)
+            };
             if (0..D).all(|k| from[k] < to[k]) && region.contains(&middle) && !taken() {
                 self.blocks.push((from, to, BlockKind::Fluid));
             }

@@ -135,16 +135,53 @@ fn a_floor_ends_at_the_domain() {
 }
 
 #[test]
-fn fluid_in_a_solid_is_refused() {
+fn fluid_gives_way_to_solids() {
     let region = "fluid.water.regions.0.box.max=[1, 3.2]";
-    let message = "region 0 of fluid `water` overlaps solid `tank`: 20 particles";
-    assert_error(tank(&[region]), ("test.toml", 10), message, "shrink the region");
+    let setup = tank(&[region]).unwrap();
+    assert_eq!(setup.particles.of_kind(0).len(), 300);
+    let note = "20 particles of region 0 of water would lie inside solid tank, the first at [0.05";
+    assert!(setup.notes().iter().any(|found| found.starts_with(note)), "{:?}", setup.notes());
+    // What the solid takes is not missing.
+    assert!((setup.volume_of_regions / 3.0 - 1.0).abs() < 2e-3, "{}", setup.volume_of_regions);
     let solid = "[[solid]]\nname = \"pillar\"\nsphere = { center = [1, 1], radius = 0.12 }\n\
                  fluid_side = \"outside\"\n";
     let scene = scene(&format!("{TANK}{solid}"), &[]).unwrap();
-    let message = "overlaps solid `pillar`: 2 particles would be inside it, the first at [0.95";
-    assert_error(Setup::<2>::new(&scene), ("test.toml", 10), message, "difference");
-    assert_error(tank(&["solid.0.fluid_side=outside"]), ("test.toml", 10), ": 200 particles", "");
+    let setup = Setup::<2>::new(&scene).unwrap();
+    assert_eq!(setup.particles.of_kind(0).len(), 198);
+    assert!(setup.notes().iter().any(|note| note.contains("2 particles of region 0")));
+    let positions = Positions::new(&scene, &Geometry::<2>::read(&scene, None).unwrap()).unwrap();
+    assert_eq!(positions.fluid, 198);
+    assert!(positions.position[..198] == setup.particles.position[..198]);
+    let all = "region 0 of fluid `water` overlaps solid `tank`: 200 particles";
+    assert_error(tank(&["solid.0.fluid_side=outside"]), ("test.toml", 10), all, "fluid_side");
+}
+
+#[test]
+fn solids_that_the_fluid_cannot_meet_are_refused() {
+    let beside = |shape: &str| {
+        let solid = format!("[[solid]]\nname = \"post\"\n{shape}\nfluid_side = \"outside\"\n");
+        Setup::<2>::new(&scene(&format!("{TANK}{solid}"), &[]).unwrap())
+    };
+    let far = beside("box = { min = [900, 0], max = [950, 300] }").unwrap_err();
+    assert!(far.to_string().contains("solid `post`, from [900.0, 0.0]"), "{far}");
+    let small = beside("box = { min = [2.001, 0.1], max = [2.0011, 0.101] }").unwrap_err();
+    assert!(small.to_string().contains("is lost between particles"), "{small}");
+    let scaled =
+        beside("box = { min = [900, 0], max = [950, 300] }\nscale = 0.001\ntranslate = [1.1, 0]");
+    assert!(!scaled.unwrap().particles.of_kind(2).is_empty());
+}
+
+#[test]
+fn thin_walls_are_named_with_place_and_spacing() {
+    let solid = "[[solid]]\nname = \"gate\"\nbox = { min = [2, 0], max = [2.12, 1] }\n\
+                 fluid_side = \"outside\"\n";
+    let scene = scene(&format!("{TANK}{solid}"), &[]).unwrap();
+    let notes = Setup::<2>::new(&scene).unwrap().notes();
+    let note = notes.iter().find(|note| note.starts_with("solid gate")).expect("a note");
+    for words in ["0.1200 m thick at [2.", "1.2 spacings", "numerics.spacing = 0.06 or less"] {
+        assert!(note.contains(words), "{note}");
+    }
+    assert!(!notes.iter().any(|note| note.starts_with("solid tank")), "{notes:?}");
 }
 
 #[test]
@@ -263,12 +300,23 @@ fn broken_meshes_are_refused_with_the_place() {
     open.triangles.pop();
     let error = with_mesh(folder.path(), &open);
     assert_error(error, (&name(folder.path()), 10), "the mesh is open: 3 edges", "fill the holes");
-    let mut turned = mesh.clone();
-    turned.triangles[3].swap(0, 1);
-    let error = with_mesh(folder.path(), &turned);
-    let message = "inconsistently oriented: the triangles on both sides of 3 edges at (";
-    assert_error(error, (&name(folder.path()), 10), message, "recalculate the normals");
     assert!(with_mesh(folder.path(), &mesh.flipped()).is_ok());
+}
+
+#[test]
+fn what_is_safe_is_repaired_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = TriangleMesh::cuboid([0.0; 3], [2.0, 1.0, 1.5]);
+    let mut broken = mesh.clone();
+    broken.triangles[3].swap(0, 1);
+    broken.triangles.push(broken.triangles[7]);
+    let whole = with_mesh(folder.path(), &mesh).unwrap();
+    let mended = with_mesh(folder.path(), &broken).unwrap();
+    assert!(whole.particles.position == mended.particles.position);
+    assert!(whole.notes_on_geometry.is_empty());
+    let words = format!("{:?} {:?}", mended.notes_on_geometry, mended.meshes[0].defects);
+    assert_eq!(words.matches("removed copies: 1 triangle at").count(), 2, "{words}");
+    assert_eq!(words.matches("turned over 1 triangle at").count(), 2, "{words}");
 }
 
 #[test]

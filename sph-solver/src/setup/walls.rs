@@ -21,7 +21,7 @@ pub fn solids<const D: usize>(
 ) -> Result<Vec<Solid<D>>, SceneError> {
     let make = |solid: &At<scene::Solid>| {
         let user = format!("solid {}", *solid.name);
-        let shape = shapes.only(&user, solid.place, &solid.shapes())?;
+        let shape = shapes.only(&user, solid.place, &solid.shapes(), &solid.placing())?;
         // Only planes have no side; their material is the half space itself.
         let side = match solid.fluid_side.map(|side| *side) {
             Some(scene::FluidSide::Inside) => FluidSide::Inside,

@@ -9,6 +9,7 @@ mod soup;
 mod stl_ascii;
 mod stl_binary;
 mod text;
+mod vtk;
 
 use super::{MeshError, TriangleMesh};
 use soup::Soup;
@@ -29,6 +30,10 @@ pub enum MeshFormat {
     PlyAscii,
     /// Stanford PLY, binary of either byte order.
     PlyBinary,
+    /// VTK in its old format, text or binary.
+    VtkLegacy,
+    /// VTK in XML: `.vtp` and `.vtu`.
+    VtkXml,
 }
 
 impl fmt::Display for MeshFormat {
@@ -39,6 +44,8 @@ impl fmt::Display for MeshFormat {
             Self::Obj => "OBJ",
             Self::PlyAscii => "ASCII PLY",
             Self::PlyBinary => "binary PLY",
+            Self::VtkLegacy => "legacy VTK",
+            Self::VtkXml => "VTK XML",
         })
     }
 }
@@ -60,8 +67,8 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// Reads an STL (ASCII or binary), OBJ or PLY (ASCII or binary) file. What it is follows from
-    /// its content. Several bodies in one file become one mesh.
+    /// Reads an STL (ASCII or binary), OBJ, PLY (ASCII or binary) or VTK file (polygon data or an
+    /// unstructured grid of polygons, legacy or XML). What it is follows from its content. Several bodies in one file become one mesh.
     ///
     /// Numbers of text are read in double precision. Numbers of 32 bits are taken as the shortest
     /// decimal number that they may stand for, so that a wall drawn at 0.68 m is at 0.68 m and not
@@ -86,6 +93,8 @@ impl MeshFile {
             MeshFormat::StlAscii => stl_ascii::read(&content.bytes, &mut soup).map(|()| 0),
             MeshFormat::Obj => obj::read(&content.bytes, &mut soup).map(|()| 0),
             MeshFormat::PlyAscii | MeshFormat::PlyBinary => ply::read(&content.bytes, &mut soup),
+            MeshFormat::VtkLegacy => vtk::read(&content.bytes, false, &mut soup).map(|()| 0),
+            MeshFormat::VtkXml => vtk::read(&content.bytes, true, &mut soup).map(|()| 0),
         };
         let surplus = surplus.map_err(refused)?;
         if let Some(count) = soup.too_many() {

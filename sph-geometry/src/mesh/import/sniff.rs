@@ -14,7 +14,7 @@ pub struct Content<'a> {
 }
 
 /// What is read, for messages.
-pub const FORMATS: &str = "STL, OBJ and PLY files are read";
+pub const FORMATS: &str = "STL, OBJ, PLY and VTK files are read";
 
 /// Starts of files that are no meshes, or none that can be read.
 const OTHERS: &[(&[u8], &str)] = &[
@@ -29,8 +29,6 @@ const OTHERS: &[(&[u8], &str)] = &[
     (b"Kaydara FBX", "an FBX file: export the surface as STL"),
     (b"BLENDER", "a Blender file: export the surface as STL"),
     (b"$MeshFormat", "a Gmsh file: export the surface as STL"),
-    (b"# vtk DataFile", "a VTK file: export the surface as STL or PLY, for example from ParaView"),
-    (b"<VTKFile", "a VTK file: export the surface as STL or PLY, for example from ParaView"),
     (b"<!DOCTYPE", "a web page: download the mesh itself"),
     (b"<html", "a web page: download the mesh itself"),
     (b"version https://git-lfs", "a pointer of Git LFS: fetch the file with `git lfs pull`"),
@@ -53,6 +51,15 @@ pub fn content(bytes: &[u8]) -> Result<Content<'_>, String> {
     let start = text.trim_ascii_start();
     if let Some((_, what)) = OTHERS.iter().find(|(magic, _)| start.starts_with(magic)) {
         return Err(format!("it is {what}"));
+    }
+    if start.starts_with(b"# vtk DataFile") {
+        let skipped = text.len() - start.len();
+        return found(MeshFormat::VtkLegacy, tail(text, skipped));
+    }
+    let head = &start[..start.len().min(1000)];
+    if start.starts_with(b"<") && head.windows(8).any(|word| word == b"<VTKFile") {
+        let skipped = text.len() - start.len();
+        return found(MeshFormat::VtkXml, tail(text, skipped));
     }
     if start.starts_with(b"<?xml") {
         let what = "it is an XML file, no mesh that can be read: export the surface as STL";

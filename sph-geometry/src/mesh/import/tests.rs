@@ -73,6 +73,72 @@ fn ply(mesh: &TriangleMesh, format: &str) -> Vec<u8> {
 
 const PLY_FORMATS: [&str; 3] = ["ascii", "binary_little_endian", "binary_big_endian"];
 
+/// Polygon data in the old text format.
+fn vtk_legacy(mesh: &TriangleMesh) -> String {
+    let (points, cells) = (mesh.vertices.len(), mesh.triangles.len());
+    let mut text = format!(
+        "# vtk DataFile Version 3.0\nmade by hand\nASCII\nDATASET POLYDATA\nPOINTS {points} double\n"
+    );
+    mesh.vertices.iter().for_each(|[x, y, z]| writeln!(text, "{x} {y:e} {z}").unwrap());
+    writeln!(text, "POLYGONS {cells} {}", 4 * cells).unwrap();
+    mesh.triangles.iter().for_each(|[a, b, c]| writeln!(text, "3 {a} {b} {c}").unwrap());
+    text
+}
+
+/// Polygon data or an unstructured grid in XML, as text.
+fn vtk_xml(mesh: &TriangleMesh, grid: bool) -> String {
+    let (points, cells) = (mesh.vertices.len(), mesh.triangles.len());
+    let join = |numbers: Vec<String>| numbers.join(" ");
+    let coordinates = join(mesh.vertices.iter().flatten().map(f64::to_string).collect());
+    let corners = join(mesh.triangles.iter().flatten().map(u32::to_string).collect());
+    let ends = join((1..=cells).map(|k| (3 * k).to_string()).collect());
+    let array = |kind: &str, name: &str, numbers: &str| {
+        format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\">{numbers}</DataArray>")
+    };
+    let lists = array("Int64", "connectivity", &corners) + &array("Int64", "offsets", &ends);
+    let (set, count, lists) = if grid {
+        let types = array("UInt8", "types", &join(vec!["5".into(); cells]));
+        ("UnstructuredGrid", "NumberOfCells", format!("<Cells>{lists}{types}</Cells>"))
+    } else {
+        ("PolyData", "NumberOfPolys", format!("<Polys>{lists}</Polys>"))
+    };
+    let others =
+        if grid { "" } else { "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\"" };
+    format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"{set}\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\">\n<{set}><Piece NumberOfPoints=\"{points}\" {count}=\"{cells}\" {others}>\
+         <Points><DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" \
+         format=\"ascii\">{coordinates}</DataArray></Points>{lists}</Piece></{set}>\n</VTKFile>\n"
+    )
+}
+
+/// Polygon data in binary, in the old format or in compressed XML.
+fn vtk_binary(mesh: &TriangleMesh, xml: bool) -> Vec<u8> {
+    use vtkio::model::{ByteOrder, DataSet, PolyDataPiece, Version, VertexNumbers, Vtk};
+    let cells = mesh.triangles.len() as u32;
+    let vertices = mesh.triangles.iter().flat_map(|&[a, b, c]| [3, a, b, c]).collect();
+    let piece = PolyDataPiece {
+        points: mesh.vertices.iter().flatten().copied().collect::<Vec<f64>>().into(),
+        polys: Some(VertexNumbers::Legacy { num_cells: cells, vertices }),
+        ..PolyDataPiece::default()
+    };
+    let file = Vtk {
+        version: Version::new_xml(1, 0),
+        title: "made by a program".into(),
+        byte_order: if xml { ByteOrder::LittleEndian } else { ByteOrder::BigEndian },
+        file_path: None,
+        data: DataSet::inline(piece),
+    };
+    let mut bytes = Vec::new();
+    if xml {
+        let xml = file.try_into_xml_format(vtkio::xml::Compressor::ZLib, 5).unwrap();
+        xml.write(&mut bytes).unwrap();
+    } else {
+        file.write_legacy(&mut bytes).unwrap();
+    }
+    bytes
+}
+
 /// The same mesh in all formats.
 fn files(mesh: &TriangleMesh) -> Vec<(MeshFormat, Vec<u8>)> {
     let [a, l, b] = PLY_FORMATS.map(|format| ply(mesh, format));
@@ -83,6 +149,11 @@ fn files(mesh: &TriangleMesh) -> Vec<(MeshFormat, Vec<u8>)> {
         (MeshFormat::PlyAscii, a),
         (MeshFormat::PlyBinary, l),
         (MeshFormat::PlyBinary, b),
+        (MeshFormat::VtkLegacy, vtk_legacy(mesh).into_bytes()),
+        (MeshFormat::VtkLegacy, vtk_binary(mesh, false)),
+        (MeshFormat::VtkXml, vtk_xml(mesh, false).into_bytes()),
+        (MeshFormat::VtkXml, vtk_xml(mesh, true).into_bytes()),
+        (MeshFormat::VtkXml, vtk_binary(mesh, true)),
     ]
 }
 
@@ -158,7 +229,7 @@ proptest! {
 
     #[test]
     fn files_with_a_hole_or_a_wrong_byte_never_panic(
-        which in 0..6usize,
+        which in 0..11usize,
         at in 0.0..1.0,
         length in 0..40usize,
         byte in any::<u8>(),
@@ -169,6 +240,34 @@ proptest! {
         let _ = MeshFile::from_bytes(&bytes).map(|file| crate::mesh::check(&file.mesh));
         bytes.drain(at..(at + length).min(bytes.len()));
         let _ = MeshFile::from_bytes(&bytes).map(|file| crate::mesh::check(&file.mesh));
+    }
+
+    /// What is left of a spoilt file is a mesh in order, or refused with a reason: all the way to a shape.
+    #[test]
+    fn spoilt_files_make_shapes_or_reasons(
+        which in 0..11usize,
+        changes in prop::collection::vec(
+            (0.0..1.0, 0..12usize, prop::sample::select(vec![
+                "", "9", "-", " 1e300 ", "nan", " 4000000000 ", "\n", "0 ", "\u{0}\u{0}", "<", "3 0 1 2\n",
+            ])),
+            1..4,
+        ),
+    ) {
+        let (_, mut bytes) = files(&unit()).swap_remove(which);
+        for (at, length, word) in changes {
+            let at = (at * bytes.len() as f64) as usize;
+            bytes.splice(at..(at + length).min(bytes.len()), word.bytes());
+        }
+        let shape = MeshFile::from_bytes(&bytes)
+            .and_then(|file| crate::mesh::repaired(&file.mesh))
+            .and_then(|file| crate::mesh::bodies(&file.mesh));
+        match shape {
+            Ok(bodies) => {
+                let shape = crate::shape::Shape::<3>::bodies(&bodies).unwrap();
+                prop_assert!(!shape.signed_distance(&[0.3, 0.4, 0.6]).is_nan());
+            }
+            Err(error) => prop_assert!(error.to_string().len() > 10, "{}", error),
+        }
     }
 
     /// A mesh with its end missing is refused, or lacks triangles; it is never something else.
@@ -349,4 +448,19 @@ fn broken_ply_files_say_what_is_wrong() {
         assert!(MeshFile::from_bytes(&fewer).is_err());
         assert!(reason(&good[..good.len() - 8]).contains("end of the file is missing"));
     }
+}
+
+#[test]
+fn strips_and_cells_of_vtk_files() {
+    let text = "# vtk DataFile Version 3.0\nstrip\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n\
+                0 0 0 1 0 0 0 1 0 1 1 0\nTRIANGLE_STRIPS 1 5\n4 0 1 2 3\n";
+    let file = MeshFile::from_bytes(text.as_bytes()).unwrap();
+    assert_eq!(file.mesh.triangles, [[0, 1, 2], [2, 1, 3]]);
+    let cube = "# vtk DataFile Version 3.0\ntetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\n\
+                POINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n";
+    assert!(reason(cube.as_bytes()).contains("extract the surface"), "{}", reason(cube.as_bytes()));
+    let beyond = text.replace("4 0 1 2 3", "4 0 1 2 9");
+    assert!(reason(beyond.as_bytes()).contains("names point 9, but there are 4"));
+    let other = vtk_xml(&unit(), false).replace("PolyData", "PPolyData");
+    assert!(MeshFile::from_bytes(other.as_bytes()).is_err());
 }

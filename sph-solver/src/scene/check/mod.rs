@@ -152,7 +152,7 @@ fn fluid(values: &Values<'_>, name: &str, fluid: &At<Fluid>) -> Result<(), Scene
     fields(values, &path, fluid.velocity.as_ref(), Some(&fluid.pressure))?;
     for (index, region) in fluid.regions.iter().enumerate() {
         let path = format!("{path}.regions.{index}");
-        shapes::one_of(values, &path, region.place, &region.shapes())?;
+        shapes::one_of(values, &path, region.place, &region.shapes(), &region.placing())?;
         fields(values, &path, region.velocity.as_ref(), region.pressure.as_ref())?;
     }
     Ok(())

@@ -4,15 +4,25 @@ use super::values::Values;
 use crate::scene::document::Place;
 use crate::scene::error::SceneError;
 use crate::scene::located::At;
+use crate::scene::placing::{Placing, Rotation, Scale};
 use crate::scene::shape::{AxisKeys, Shape, ShapeKeys};
-use crate::scene::solid::Solid;
+use crate::scene::solid::{FluidSide, Solid};
 
 const KEYS: &str = "box, sphere, cylinder, capsule, plane, polygon, mesh, union, difference";
 
 pub fn solid(values: &Values<'_>, index: usize, solid: &At<Solid>) -> Result<(), SceneError> {
     let path = format!("solid.{index}");
     let shapes = solid.shapes();
-    one_of(values, &path, solid.place, &shapes)?;
+    one_of(values, &path, solid.place, &shapes, &solid.placing())?;
+    if let (Some(thickness), Some(FluidSide::Inside)) =
+        (&solid.thickness, solid.fluid_side.map(|side| *side))
+    {
+        return Err(values.invalid(
+            thickness.place,
+            format!("solid `{}` is a sheet, with the fluid inside", *solid.name),
+            "give fluid_side = \"outside\": the fluid is on both sides of a sheet, the material in it",
+        ));
+    }
     let plane = matches!(shapes[..], [Shape::Plane(_)]);
     match &solid.fluid_side {
         None if !plane => Err(values.invalid(
@@ -35,6 +45,7 @@ pub fn one_of(
     path: &str,
     place: Place,
     shapes: &[Shape<'_>],
+    placing: &Placing<'_>,
 ) -> Result<(), SceneError> {
     match shapes {
         [] => Err(values.invalid(
@@ -42,7 +53,10 @@ pub fn one_of(
             format!("`{path}` has no shape"),
             &format!("give exactly one of {KEYS}"),
         )),
-        [one] => shape(values, path, one),
+        [one] => {
+            shape(values, path, one)?;
+            placed(values, path, one, placing)
+        }
         [first, second, ..] => Err(values.invalid(
             second.place(),
             format!("`{path}` has two shapes: {} and {}", first.key(), second.key()),
@@ -84,6 +98,78 @@ fn shape(values: &Values<'_>, path: &str, shape: &Shape<'_>) -> Result<(), Scene
     }
 }
 
+/// Keys that scale, rotate and translate.
+fn placed(
+    values: &Values<'_>,
+    path: &str,
+    shape: &Shape<'_>,
+    placing: &Placing<'_>,
+) -> Result<(), SceneError> {
+    let Placing { units, scale, rotate, translate, thickness, convex_hull } = placing;
+    let only_for_meshes = [
+        units.map(|key| ("units", key.place)),
+        thickness.map(|key| ("thickness", key.place)),
+        convex_hull.map(|key| ("convex_hull", key.place)),
+    ];
+    if let Some((key, place)) = only_for_meshes.into_iter().flatten().next()
+        && !matches!(shape, Shape::Mesh(_))
+    {
+        let what = format!("`{path}.{key}` belongs to a mesh, and this is a {}", shape.key());
+        return Err(values.invalid(place, what, "remove the key; `scale` suits every shape"));
+    }
+    if let (Some(thickness), Some(At { value: true, .. })) = (thickness, convex_hull) {
+        let what = format!("`{path}` cannot have a thickness and be a convex hull");
+        return Err(values.invalid(thickness.place, what, "remove one of the keys"));
+    }
+    if let Some(thickness) = thickness {
+        values.positive(&format!("{path}.thickness"), thickness, "in metres")?;
+    }
+    if let Some(scale) = scale {
+        let zero = match &scale.value {
+            Scale::Uniform(factor) => *factor == 0.0,
+            Scale::Axes(factors) => {
+                values.length(&format!("{path}.scale"), scale.place, factors.len())?;
+                factors.contains(&0.0)
+            }
+        };
+        if zero {
+            let what = format!("`{path}.scale` is 0");
+            return Err(values.invalid(scale.place, what, "for example 0.001 for millimetres"));
+        }
+    }
+    if let Some(rotate) = rotate {
+        rotation(values, &format!("{path}.rotate"), rotate)?;
+    }
+    match translate {
+        Some(translate) => values.components(&format!("{path}.translate"), translate),
+        None => Ok(()),
+    }
+}
+
+fn rotation(values: &Values<'_>, path: &str, rotate: &At<Rotation>) -> Result<(), SceneError> {
+    match (values.scene.dimension(), &rotate.axis) {
+        (2, None) => Ok(()),
+        (2, Some(axis)) => Err(values.invalid(
+            axis.place,
+            format!("`{path}.axis` has no meaning in two dimensions"),
+            "give the degrees alone: rotate = 30",
+        )),
+        (_, None) => Err(values.invalid(
+            rotate.place,
+            format!("`{path}` needs an axis in three dimensions"),
+            "for example rotate = { axis = [0, 0, 1], degrees = 30 }",
+        )),
+        (_, Some(axis)) => {
+            values.components(&format!("{path}.axis"), axis)?;
+            if axis.iter().all(|x| *x == 0.0) {
+                let what = format!("`{path}.axis` has no direction");
+                return Err(values.invalid(axis.place, what, "for example [0, 0, 1]"));
+            }
+            Ok(())
+        }
+    }
+}
+
 fn axis(values: &Values<'_>, path: &str, keys: &AxisKeys) -> Result<(), SceneError> {
     values.components(&format!("{path}.from"), &keys.from)?;
     values.components(&format!("{path}.to"), &keys.to)?;
@@ -110,7 +196,7 @@ fn several(
         ));
     }
     for (index, keys) in shapes.iter().enumerate() {
-        one_of(values, &format!("{path}.{index}"), keys.place, &keys.shapes())?;
+        one_of(values, &format!("{path}.{index}"), keys.place, &keys.shapes(), &keys.placing())?;
     }
     Ok(())
 }
