@@ -64,20 +64,43 @@ pub fn wall_elements<const D: usize>(
     });
     let mut elements = WallElements::default();
     for index in layer.indices().filter(|index| free.is_near(index, &reach)) {
-        let center = lattice.point(&index);
-        let Some((position, share)) = material(solids, &center, spacing, half, margin) else {
+        let Some((position, share)) = element(solids, &lattice.point(&index), spacing) else {
             continue;
         };
         let depth = |k: usize| solids[k].depth_in_solid(&position);
         let deepest = (0..solids.len()).reduce(|a, b| if depth(b) > depth(a) { b } else { a });
         let Some(owner) = deepest else { continue };
-        elements.positions.push(position);
-        elements.volumes.push(share * spacing.powi(D as i32));
-        elements.solids.push(owner as u32);
-        elements.normals.push(solids[owner].normal(&position));
-        elements.depths.push(depth(owner));
+        elements.add(solids, owner, position, share * spacing.powi(D as i32));
     }
     Ok(elements)
+}
+
+impl<const D: usize> WallElements<D> {
+    /// Adds an element of solid number `owner`.
+    pub(crate) fn add(
+        &mut self,
+        solids: &[Solid<D>],
+        owner: usize,
+        position: [f64; D],
+        volume: f64,
+    ) {
+        let (depth, normal) = solids[owner].depth_and_normal(&position);
+        self.positions.push(position);
+        self.volumes.push(volume);
+        self.solids.push(owner as u32);
+        self.normals.push(normal);
+        self.depths.push(depth);
+    }
+}
+
+/// [`material`] in the cell around a lattice point.
+pub(crate) fn element<const D: usize>(
+    solids: &[Solid<D>],
+    center: &[f64; D],
+    spacing: f64,
+) -> Option<([f64; D], f64)> {
+    let half = 0.5 * spacing * (D as f64).sqrt();
+    material(solids, center, spacing, half, ON_SURFACE * spacing)
 }
 
 /// Centroid of the material in a cell, and the share of the cell that it fills. Solids are taken for
