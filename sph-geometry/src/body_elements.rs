@@ -56,8 +56,7 @@ mod tests {
         let ball = Shape::sphere([1.0, 0.93], 0.42).unwrap();
         let ball = Solid::new("ball", ball, FluidSide::Outside);
         let domain = Domain::new(Aabb::new([0.0; 2], [2.0; 2]));
-        let at_rest =
-            wall_elements(std::slice::from_ref(&ball), &lattice, 0.3, &domain).unwrap();
+        let at_rest = wall_elements(std::slice::from_ref(&ball), &lattice, 0.3, &domain).unwrap();
         assert_eq!(body_elements(&ball, &lattice, 0.3).unwrap(), at_rest);
     }
 
