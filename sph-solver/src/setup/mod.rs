@@ -111,7 +111,7 @@ impl<const D: usize> Setup<D> {
             density_diffusion: *numerics.density_diffusion,
             viscosity: scene.viscosity(),
             // Only a scheme that shifts particles asks, and an answer takes a search of the domain.
-            closed: *numerics.scheme == scene::Scheme::DeltaPlus
+            closed: numerics.scheme == scene::Scheme::DeltaPlus
                 && walls::is_closed(scene, &solids, &lattice, &domain, filling.position.len())?,
             cavitation_pressure: fluid.cavitation_pressure.map(|pressure| *pressure),
             domain: (domain.min, domain.max),
