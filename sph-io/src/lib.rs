@@ -22,5 +22,5 @@ pub use error::IoError;
 pub use frame::ParticleFrame;
 pub use pvd::{PvdEntry, PvdIndex};
 pub use series::SnapshotSeries;
-pub use table::{Table, TableWriter, read_table};
+pub use table::{Table, TableWriter, read_csv, read_table};
 pub use vtu::write_vtu;

@@ -244,6 +244,9 @@ impl<const D: usize, S: Real> WallSet<D, S> {
     /// Bytes in use.
     pub fn bytes(&self) -> usize {
         let moving = self.motion.as_ref().map_or(0, |motion| 4 * motion.elements.len());
-        self.records.len() * size_of::<Record<S>>() + self.near.bytes() + self.cells.bytes() + moving
+        self.records.len() * size_of::<Record<S>>()
+            + self.near.bytes()
+            + self.cells.bytes()
+            + moving
     }
 }

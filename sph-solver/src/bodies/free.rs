@@ -84,6 +84,11 @@ impl Free {
         body.spin += self.respond(&body.rotation(), &turn);
     }
 
+    /// The part of a displacement that is not held.
+    pub fn movable(&self, way: Vector3<f64>) -> Vector3<f64> {
+        self.masked(way, self.moves)
+    }
+
     /// Inverse of the mass that a contact at `arm` (m) feels along the unit vector `direction`, 1/kg.
     pub fn yielding(&self, body: &Rigid, arm: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
         let along = self.masked(*direction, self.moves).norm_squared() / self.mass;
@@ -136,7 +141,8 @@ mod tests {
         }
     }
 
-    const NOTHING: Wrench = Wrench { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
+    const NOTHING: Wrench =
+        Wrench { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
 
     /// Turns about the middle axis are unstable: the body tumbles, and keeps momentum and energy.
     #[test]
@@ -165,7 +171,8 @@ mod tests {
         brick.moves = [true, false, true];
         let mut body = Rigid::at(Vector3::zeros());
         let mut momentum = Vector3::zeros();
-        let push = Wrench { force: Vector3::new(4.0, 4.0, 0.0), moment: Vector3::new(1.0, 1.0, 6.0) };
+        let push =
+            Wrench { force: Vector3::new(4.0, 4.0, 0.0), moment: Vector3::new(1.0, 1.0, 6.0) };
         brick.kick(&mut body, &mut momentum, &push, 0.5, 0.0);
         assert_eq!(body.velocity, Vector3::new(1.0, 0.0, 0.0));
         assert_eq!(body.spin, Vector3::new(0.0, 0.0, 1.0));

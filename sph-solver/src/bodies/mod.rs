@@ -26,7 +26,7 @@ use crate::lio::Extremes;
 use crate::records::Encoder;
 use crate::space::wrapped;
 use crate::walls::{WallElements, WallSet};
-use contact::Obstacles;
+use contact::{Gap, Obstacles};
 use nalgebra::Vector3;
 use sph_geometry::{Aabb, Solid};
 use sph_kernels::Real;
@@ -89,8 +89,10 @@ struct Moving<const D: usize> {
     radius: f64,
     /// Points on the surface, from the reference point in the axes of the body, m.
     surface: Arc<Vec<Vector3<f64>>>,
-    /// Least distances to what it may hit: solids at rest, then bodies. Nothing depends on them but the work.
-    gaps: Vec<f64>,
+    /// Distance of its elements, m.
+    spacing: f64,
+    /// What is known of it and all it may hit: solids at rest, then bodies.
+    gaps: Vec<Gap>,
 }
 
 impl<const D: usize> Default for Bodies<D> {
@@ -131,6 +133,7 @@ impl<const D: usize> Bodies<D> {
                 radius,
                 surface,
                 gaps: Vec::new(),
+                spacing: body.spacing(),
                 now: body.start,
                 full: Kinematics { rigid: body.start, acceleration: Vector3::zeros() },
                 momentum,
@@ -144,6 +147,11 @@ impl<const D: usize> Bodies<D> {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
+    }
+
+    /// Number of their wall elements.
+    pub fn elements(&self) -> usize {
+        self.all.iter().map(|moving| moving.body.elements.len()).sum()
     }
 
     /// Numbers of the solids that move freely, whose loads all ranks must know.
@@ -183,6 +191,20 @@ impl<const D: usize> Bodies<D> {
             spin: [spin.x, spin.y, spin.z],
             periods: self.periods,
         })
+    }
+
+    /// The part of a force by pressure, felt at `x` (m), along the normal of a moving solid there.
+    ///
+    /// What a wall continues of the pressure gradient also acts along it. That completes the sums of the
+    /// fluid and adds up to nothing over a body under water, but it would turn a slippery ball.
+    pub fn across(&self, solid: u16, x: &[f64; D], force: [f64; D]) -> [f64; D] {
+        let Some(moving) = self.all.iter().find(|moving| moving.body.solid == solid) else {
+            return force;
+        };
+        let home = moving.body.home() + moving.now.arm(&in_space(x));
+        let normal = moving.body.shape.normal(&in_scene(&home));
+        let normal = moving.now.orientation * in_space(&normal);
+        in_scene(&(normal * normal.dot(&in_space(&force))))
     }
 
     /// The elements of each body that lie within `reach` (m) of the box around some fluid, as sets of
@@ -286,24 +308,35 @@ impl<const D: usize> Bodies<D> {
         for moving in &self.all {
             numbers.extend(moving.now.to_array());
             numbers.extend(moving.momentum.iter().chain(moving.full.acceleration.iter()));
+            let gaps =
+                (0..self.partners()).map(|k| moving.gaps.get(k).and_then(|gap| gap.touching));
+            numbers.extend(gaps.map(|touching| touching.unwrap_or(-1.0)));
         }
         numbers
     }
 
     /// Goes on from what [`save`](Self::save) gave. Returns whether it fits these bodies.
     pub fn restore(&mut self, numbers: &[f64]) -> bool {
-        const STRIDE: usize = rigid::NUMBERS + 6;
-        if numbers.len() != STRIDE * self.all.len() {
+        let stride = rigid::NUMBERS + 6 + self.partners();
+        if numbers.len() != stride * self.all.len() {
             return false;
         }
-        for (moving, numbers) in self.all.iter_mut().zip(numbers.chunks_exact(STRIDE)) {
+        for (moving, numbers) in self.all.iter_mut().zip(numbers.chunks_exact(stride)) {
             moving.now = Rigid::from_array(std::array::from_fn(|k| numbers[k]));
             let vector = |first: usize| Vector3::from_fn(|k, _| numbers[first + k]);
             moving.momentum = vector(rigid::NUMBERS);
             let acceleration = vector(rigid::NUMBERS + 3);
             moving.full = Kinematics { rigid: moving.now, acceleration };
+            let touching = |distance: &f64| Some(*distance).filter(|distance| *distance >= 0.0);
+            let gap = |distance| Gap { touching: touching(distance), ..Gap::default() };
+            moving.gaps = numbers[rigid::NUMBERS + 6..].iter().map(gap).collect();
         }
         true
+    }
+
+    /// How much a body may hit.
+    fn partners(&self) -> usize {
+        self.obstacles.len() + self.all.len()
     }
 }
 
@@ -316,10 +349,15 @@ impl<const D: usize> Body<D> {
         }
     }
 
+    /// Distance of the elements, m.
+    fn spacing(&self) -> f64 {
+        self.elements.volume.iter().copied().fold(0.0, f64::max).powf(1.0 / D as f64)
+    }
+
     /// Points on the surface, from the reference point, m: above every element next to it.
     fn surface(&self) -> Vec<Vector3<f64>> {
-        let WallElements { position, normal, depth, volume, .. } = &self.elements;
-        let spacing = volume.iter().copied().fold(0.0, f64::max).powf(1.0 / D as f64);
+        let WallElements { position, normal, depth, .. } = &self.elements;
+        let spacing = self.spacing();
         let near = (0..depth.len()).filter(|&i| depth[i] < spacing);
         near.map(|i| in_space(&position[i]) + in_space(&normal[i]) * depth[i] - self.home())
             .collect()

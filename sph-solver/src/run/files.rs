@@ -3,6 +3,7 @@
 use super::load_log::LoadRow;
 use super::plan::RunPlan;
 use super::samples::Budget;
+use crate::bodies::Kinematics;
 use crate::error::RunError;
 use crate::loads::NUMBERS;
 use crate::model::Model;
@@ -26,10 +27,10 @@ pub struct Files {
 }
 
 impl Files {
-    /// Opens the outputs of a run; with `resumed_at`, continues those that end at that time (s).
+    /// Opens the outputs of a run with solids of these names, which move or not; with `resumed_at`, continues those that end at that time (s).
     pub fn open<const D: usize>(
         plan: &RunPlan<D>,
-        solids: &[&str],
+        solids: &[(&str, bool)],
         resumed_at: Option<f64>,
     ) -> Result<Self, RunError> {
         let table = |name: &str, columns: &[(&str, &str)]| {
@@ -68,7 +69,13 @@ impl Files {
             probes: probes.collect::<Result<_, _>>()?,
             solids: solids
                 .iter()
-                .map(|name| table(&format!("solid-{name}"), &load_columns(D)))
+                .map(|(name, moves)| {
+                    let mut columns = load_columns(D);
+                    if *moves {
+                        columns.extend(motion_columns(D));
+                    }
+                    table(&format!("solid-{name}"), &columns)
+                })
                 .collect::<Result<_, _>>()?,
             lost: table("lost", &lost_columns(D))?,
             snapshots: 0,
@@ -81,23 +88,16 @@ impl Files {
         walls: &WallElements<D>,
         density0: f64,
     ) -> Result<(), RunError> {
-        // The pressure of a wall is a matter of each pair; 0 keeps the array in every file.
-        let kind: Vec<u16> = walls.solid.iter().map(|solid| FLUID + 1 + solid).collect();
-        let frame = ParticleFrame::new(0.0, &walls.position)
-            .with("velocity", vec![[0.0_f32; D]; walls.len()])
-            .with("pressure", vec![0.0_f32; walls.len()])
-            .with("density", vec![density0 as f32; walls.len()])
-            .with("normal", single(&walls.normal))
-            .with("kind", &kind)
-            .with("id", &walls.id);
+        let frame = wall_frame(0.0, walls, density0);
         Ok(self.series.fixed_part("walls", &frame)?)
     }
 
-    /// Writes a snapshot of the fluid.
+    /// Writes a snapshot of the fluid, and of the walls that move if there are any.
     pub fn snapshot<const D: usize>(
         &mut self,
         model: &Model<D>,
         full: &FullStep<D>,
+        moving: &WallElements<D>,
     ) -> Result<(), RunError> {
         let eos = &model.equation_of_state;
         let pressure: Vec<f32> = full.density.iter().map(|d| eos.pressure(*d) as f32).collect();
@@ -108,7 +108,9 @@ impl Files {
             .with("density", single_scalars(&full.density))
             .with("kind", kind)
             .with("id", &full.id);
-        self.series.write(&frame)?;
+        let walls = wall_frame(full.time, moving, model.equation_of_state.density0());
+        let parts = [("moving", &walls)];
+        self.series.write_parts(&frame, if moving.is_empty() { &[] } else { &parts })?;
         self.snapshots += 1;
         Ok(())
     }
@@ -131,8 +133,13 @@ impl Files {
     }
 
     /// Appends a row to the table of each solid.
-    pub fn loads<const D: usize>(&mut self, time: f64, rows: &[LoadRow]) -> Result<(), RunError> {
-        for (table, row) in self.solids.iter_mut().zip(rows) {
+    pub fn loads<const D: usize>(
+        &mut self,
+        time: f64,
+        rows: &[LoadRow],
+        moving: &[(u16, Kinematics)],
+    ) -> Result<(), RunError> {
+        for ((table, row), solid) in self.solids.iter_mut().zip(rows).zip(0..) {
             let total = |load: &[f64; NUMBERS], k: usize| load[k] + load[6 + k];
             let (forces, moments) = load_axes(D);
             let mut numbers = Vec::new();
@@ -141,6 +148,9 @@ impl Files {
             }
             numbers.extend(forces.map(|k| row.now[6 + k]));
             numbers.push(row.largest);
+            if let Some((_, kinematics)) = moving.iter().find(|(number, _)| *number == solid) {
+                numbers.extend(motion_row(D, kinematics));
+            }
             table.row(time, &numbers)?;
         }
         Ok(())
@@ -160,6 +170,58 @@ impl Files {
     pub fn snapshots(&self) -> u64 {
         self.snapshots
     }
+}
+
+/// Elements of walls as a part of a snapshot.
+fn wall_frame<const D: usize>(
+    time: f64,
+    walls: &WallElements<D>,
+    density0: f64,
+) -> ParticleFrame<'_, D> {
+    // The pressure of a wall is a matter of each pair; 0 keeps the array in every file.
+    let kind: Vec<u16> = walls.solid.iter().map(|solid| FLUID + 1 + solid).collect();
+    ParticleFrame::new(time, &walls.position)
+        .with("velocity", vec![[0.0_f32; D]; walls.len()])
+        .with("pressure", vec![0.0_f32; walls.len()])
+        .with("density", vec![density0 as f32; walls.len()])
+        .with("normal", single(&walls.normal))
+        .with("kind", kind)
+        .with("id", &walls.id)
+}
+
+/// What the table of a solid that moves says of its motion, besides the load on it.
+fn motion_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
+    let vectors = [
+        (["x", "y", "z"], "m"),
+        (["velocity_x", "velocity_y", "velocity_z"], "m/s"),
+        (["acceleration_x", "acceleration_y", "acceleration_z"], "m/s2"),
+    ];
+    let of = |(names, unit): ([&'static str; 3], &'static str)| {
+        names.into_iter().take(dimension).map(move |name| (name, unit))
+    };
+    let mut columns: Vec<_> = vectors.into_iter().flat_map(of).collect();
+    let turns = [
+        (["rotation_x", "rotation_y", "rotation_z"], "rad"),
+        (["spin_x", "spin_y", "spin_z"], "rad/s"),
+    ];
+    for (names, unit) in turns {
+        let skipped = if dimension == 2 { 2 } else { 0 };
+        columns.extend(names.into_iter().skip(skipped).map(|name| (name, unit)));
+    }
+    columns
+}
+
+/// The numbers under [`motion_columns`]. The rotation is a vector along the axis, as long as the angle.
+fn motion_row(dimension: usize, kinematics: &Kinematics) -> Vec<f64> {
+    let Kinematics { rigid, acceleration } = kinematics;
+    let mut row = Vec::new();
+    for vector in [&rigid.position, &rigid.velocity, acceleration] {
+        row.extend(vector.iter().take(dimension));
+    }
+    for vector in [rigid.orientation.scaled_axis(), rigid.spin] {
+        row.extend(vector.iter().skip(if dimension == 2 { 2 } else { 0 }));
+    }
+    row
 }
 
 /// Snapshots are for the eye: single precision halves them.
