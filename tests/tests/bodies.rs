@@ -212,7 +212,7 @@ fn bodies_move_by_the_same_bits_on_any_ranks_and_after_a_restart() {
         same(&run(ranks, threads), &format!("{ranks} ranks, {threads} threads"));
     }
     let parts = Results::of(Run::new(&scene).threads(1).checkpoint_every(0.1).end_time(0.3));
-    parts.add(Run::new(&scene).ranks(2).threads(1).resume()).message.assert_readable();
+    parts.add(Run::new(&scene).ranks(2).threads(1).resume());
     same(&parts, "after a restart");
 }
 

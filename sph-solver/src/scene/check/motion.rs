@@ -144,7 +144,7 @@ fn body(values: &Values<'_>, path: &str, body: &At<Body>) -> Result<(), SceneErr
     {
         return Err(values.invalid(
             degree.place,
-            "a body in two dimensions has no such degree of freedom".into(),
+            format!("`{path}.fixed`: a body in two dimensions has no such degree of freedom"),
             "those that can be held are \"x\", \"y\" and \"rotation-z\"",
         ));
     }
