@@ -8,7 +8,8 @@
 //!   differences, in two and three dimensions.
 //! * [`Solid`]: a shape with material on one side of its surface.
 //! * [`Lattice`]: where particles are placed; [`fill_lattice`] fills a region with them.
-//! * [`wall_elements`]: the material of walls cell by cell, one support radius deep and only near fluid.
+//! * [`wall_elements`]: the material of walls cell by cell, one support radius deep and only near fluid;
+//!   [`body_elements`]: those of a solid that moves.
 //!
 //! Lengths are in metres, directions are unit vectors, `D` is the dimension.
 //!
@@ -18,16 +19,19 @@
 
 mod aabb;
 mod affine;
+mod body_elements;
 mod boundary;
 mod lattice;
 mod mesh;
 mod shape;
+mod shape_mass;
 mod solid;
 mod vector;
 mod wall_elements;
 
 pub use aabb::Aabb;
 pub use affine::Affine;
+pub use body_elements::body_elements;
 pub use boundary::{Domain, WallParticles, free_cells, solid_at, wall_particles};
 pub use lattice::{
     Lattice, LatticeError, LatticeRuns, NearSurface, fill_lattice, lattice_inside, near_surface,
@@ -37,6 +41,7 @@ pub use mesh::{
     Repairs, TriangleMesh, bodies, check, mass_properties, repaired,
 };
 pub use shape::{Nearest, Shape, ShapeError, SignedDistance};
+pub use shape_mass::shape_mass_properties;
 pub use solid::{FluidSide, Solid, depth_in_solids};
 pub use wall_elements::{WallElements, wall_elements};
 

@@ -55,8 +55,7 @@ pub fn wall_elements<const D: usize>(
     let layer = Layer::trace(solids, lattice, support, domain, margin - half)?;
     let mut elements = WallElements::default();
     for index in layer.near_fluid() {
-        let center = lattice.point(&index);
-        let Some((position, share)) = material(solids, &center, spacing, half, margin) else {
+        let Some((position, share)) = element(solids, &lattice.point(&index), spacing) else {
             continue;
         };
         let mut deepest = (f64::NEG_INFINITY, None);
@@ -67,14 +66,37 @@ pub fn wall_elements<const D: usize>(
             }
         }
         let Some(owner) = deepest.1 else { continue };
-        elements.positions.push(position);
-        elements.volumes.push(share * spacing.powi(D as i32));
-        elements.solids.push(owner as u32);
-        let (depth, normal) = solids[owner].depth_and_normal(&position);
-        elements.normals.push(normal);
-        elements.depths.push(depth);
+        elements.add(solids, owner, position, share * spacing.powi(D as i32));
     }
     Ok(elements)
+}
+
+impl<const D: usize> WallElements<D> {
+    /// Adds an element of solid number `owner`.
+    pub(crate) fn add(
+        &mut self,
+        solids: &[Solid<D>],
+        owner: usize,
+        position: [f64; D],
+        volume: f64,
+    ) {
+        let (depth, normal) = solids[owner].depth_and_normal(&position);
+        self.positions.push(position);
+        self.volumes.push(volume);
+        self.solids.push(owner as u32);
+        self.normals.push(normal);
+        self.depths.push(depth);
+    }
+}
+
+/// [`material`] in the cell around a lattice point.
+pub(crate) fn element<const D: usize>(
+    solids: &[Solid<D>],
+    center: &[f64; D],
+    spacing: f64,
+) -> Option<([f64; D], f64)> {
+    let half = 0.5 * spacing * (D as f64).sqrt();
+    material(solids, center, spacing, half, ON_SURFACE * spacing)
 }
 
 /// Centroid of the material in a cell, and the share of the cell that it fills. Solids are taken for

@@ -74,8 +74,12 @@ impl SnapshotSeries {
             .max()
             .map_or(0, |last| last + 1);
         let mut fixed = Vec::new();
+        let numbered = |file: &str| {
+            let stem = file.strip_suffix(".vtu").unwrap_or(file);
+            stem.rsplit_once('-').is_some_and(|(part, _)| number_of(part, file).is_some())
+        };
         for entry in index.entries().iter().filter(|entry| entry.part > 0) {
-            if !fixed.contains(&entry.file) {
+            if !numbered(&entry.file) && !fixed.contains(&entry.file) {
                 fixed.push(entry.file.clone());
             }
         }
@@ -116,10 +120,30 @@ impl SnapshotSeries {
         &mut self,
         frame: &ParticleFrame<'_, D>,
     ) -> Result<PathBuf, IoError> {
+        self.write_parts(frame, &[])
+    }
+
+    /// Writes the next snapshot in parts: `frame`, and each of `parts` as `NAME-PART-000000.vtu`. Returns
+    /// the path of the first.
+    ///
+    /// # Errors
+    ///
+    /// [`IoError`] as [`write_vtu`].
+    pub fn write_parts<const D: usize>(
+        &mut self,
+        frame: &ParticleFrame<'_, D>,
+        parts: &[(&str, &ParticleFrame<'_, D>)],
+    ) -> Result<PathBuf, IoError> {
         let file = format!("{}-{:06}.vtu", self.name, self.next);
         let path = self.folder.join(&file);
         write_vtu(&path, frame)?;
         let mut files = vec![file];
+        for (part, frame) in parts {
+            crate::column::check_name(part)?;
+            let file = format!("{}-{part}-{:06}.vtu", self.name, self.next);
+            write_vtu(self.folder.join(&file), frame)?;
+            files.push(file);
+        }
         files.extend(self.fixed.iter().cloned());
         self.index.add(frame.time(), &files)?;
         self.next += 1;
@@ -160,7 +184,7 @@ mod tests {
         let mut series = SnapshotSeries::create(folder.path(), "s").unwrap();
         series.fixed_part("walls", &frame(0.0)).unwrap();
         for time in [0.0, 1.0, 2.0, 3.0] {
-            series.write(&frame(time)).unwrap();
+            series.write_parts(&frame(time), &[("body", &frame(time))]).unwrap();
         }
         let mut series = SnapshotSeries::resume(folder.path(), "s", 1.5).unwrap();
         assert_eq!(series.next_number(), 2);
@@ -171,9 +195,11 @@ mod tests {
             shown,
             [
                 (0.0, 0, "s-000000.vtu"),
-                (0.0, 1, "s-walls.vtu"),
+                (0.0, 1, "s-body-000000.vtu"),
+                (0.0, 2, "s-walls.vtu"),
                 (1.0, 0, "s-000001.vtu"),
-                (1.0, 1, "s-walls.vtu"),
+                (1.0, 1, "s-body-000001.vtu"),
+                (1.0, 2, "s-walls.vtu"),
                 (2.5, 0, "s-000002.vtu"),
                 (2.5, 1, "s-walls.vtu"),
             ]

@@ -150,6 +150,8 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             beside: Beside {
                 lowest_pressure: self.lowest_wall_pressure,
                 pressure_gradient: self.pressure_gradient,
+                position: self.position,
+                frame: None,
             },
         };
         (targets, self.rates)

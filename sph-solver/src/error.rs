@@ -186,6 +186,16 @@ pub enum RunError {
         /// The folder.
         path: std::path::PathBuf,
     },
+    /// A checkpoint holds other moving solids than the scene.
+    #[error(
+        "the checkpoint in {} holds other moving solids than the scene: which solids move cannot change \
+         when a run goes on",
+        path.display()
+    )]
+    OtherBodies {
+        /// The folder.
+        path: std::path::PathBuf,
+    },
     /// Signals cannot be waited for.
     #[error("the system does not let this program handle signals: {0}")]
     Signals(std::io::Error),
@@ -236,6 +246,7 @@ impl RunError {
                 | Self::TooManyRanks { .. }
                 | Self::Scene(_)
                 | Self::OtherScene { .. }
+                | Self::OtherBodies { .. }
                 | Self::NothingToResume { .. }
                 | Self::NothingLeft { .. }
                 | Self::RanksUnderMpi
@@ -253,6 +264,7 @@ impl RunError {
                 | Self::TooManyRanks { .. }
                 | Self::WithoutMpi { .. }
                 | Self::OtherScene { .. }
+                | Self::OtherBodies { .. }
                 | Self::NothingToResume { .. }
                 | Self::NothingLeft { .. }
                 | Self::RanksUnderMpi

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod block;
+pub mod bodies;
 pub mod cli;
 pub mod eos;
 pub mod error;

@@ -4,6 +4,8 @@
 //! of a tiny quantum, so that their sum is the same on any number of ranks and threads, and momentum
 //! that the fluid gains is momentum that the solids lose, to the last bit of the quantum.
 
+use crate::model::Model;
+
 /// Parts of a load: what the pressure does and what the friction does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
@@ -38,10 +40,36 @@ impl LoadScale {
         Self { force, moment: force * spacing }
     }
 
+    /// For a run of this model.
+    pub fn of_model<const D: usize>(model: &Model<D>) -> Self {
+        let mass = model.equation_of_state.density0() * model.spacing.powi(D as i32);
+        Self::new(mass, model.spacing, model.limits.sound_speed)
+    }
+
     /// A load in N and N m, from its quanta.
     pub fn in_newtons(&self, quanta: &Quanta) -> [f64; NUMBERS] {
         std::array::from_fn(|k| quanta[k] as f64 * if k % 6 < 3 { self.force } else { self.moment })
     }
+}
+
+/// Words of a load on its way between ranks.
+pub const WORDS: usize = 4 * NUMBERS;
+
+/// A load on its way: four words of 32 bits for each number, so that those of many ranks add up without
+/// overflow.
+pub fn apart(quanta: &Quanta) -> impl Iterator<Item = u64> + '_ {
+    let words =
+        |number: i128| (0..4).map(move |k| (number as u128 >> (32 * k)) as u64 & 0xffff_ffff);
+    quanta.iter().flat_map(move |number| words(*number))
+}
+
+/// Back from the sums of what [`apart`] gave; `words` are [`WORDS`].
+pub fn together(words: &[u64]) -> Quanta {
+    let number = |words: &[u64]| {
+        let word = |k: usize| u128::from(words[k]) << (32 * k);
+        (0..4).map(word).fold(0_u128, u128::wrapping_add) as i128
+    };
+    std::array::from_fn(|k| number(&words[4 * k..4 * k + 4]))
 }
 
 /// Loads on solids, by the number of the solid in the scene; solids without a load may be missing.
@@ -60,27 +88,23 @@ impl Loads {
         found.map_or([0; NUMBERS], |k| self.by_solid[k].1)
     }
 
-    /// Adds the force `force` (N) at `arm` (m, from the point that moments are about) to the load on a
-    /// solid.
+    /// Adds a force (N) and its moment (N m, about x, y and z) to the load on a solid.
     pub fn add<const D: usize>(
         &mut self,
         solid: u16,
         part: Part,
         force: [f64; D],
-        arm: [f64; D],
+        moment: [f64; 3],
         scale: &LoadScale,
     ) {
         let quanta = self.entry(solid);
         let first = if part == Part::Pressure { 0 } else { 6 };
-        let of = |v: &[f64; D], k: usize| v.get(k).copied().unwrap_or(0.0);
         for k in 0..D {
             quanta[first + k] += whole(force[k] / scale.force);
         }
         let axes = if D == 2 { 2..3 } else { 0..3 };
         for k in axes {
-            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-            let moment = of(&arm, a) * of(&force, b) - of(&arm, b) * of(&force, a);
-            quanta[first + 3 + k] += whole(moment / scale.moment);
+            quanta[first + 3 + k] += whole(moment[k] / scale.moment);
         }
     }
 
@@ -111,6 +135,15 @@ impl Loads {
     }
 }
 
+/// The moment (N m) about x, y and z of a force (N) at `arm` (m).
+pub fn moment<const D: usize>(arm: &[f64; D], force: &[f64; D]) -> [f64; 3] {
+    let of = |v: &[f64; D], k: usize| v.get(k).copied().unwrap_or(0.0);
+    std::array::from_fn(|k| {
+        let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+        of(arm, a) * of(force, b) - of(arm, b) * of(force, a)
+    })
+}
+
 /// The nearest whole number. What is out of range has diverged, which the watch for faults reports.
 fn whole(x: f64) -> i128 {
     // Much faster than `round` and a cast to 128 bits.
@@ -124,10 +157,20 @@ mod tests {
 
     const SCALE: LoadScale = LoadScale { force: 1e-15, moment: 1e-16 };
 
+    proptest! {
+        #[test]
+        fn numbers_survive_the_sum_over_ranks(a in any::<i64>(), b in any::<i64>()) {
+            let (a, b) = (i128::from(a) << 40, i128::from(b) << 40);
+            let words = |number: i128| apart(&[number; NUMBERS]).collect::<Vec<_>>();
+            let sum: Vec<u64> = words(a).iter().zip(words(b)).map(|(x, y)| x + y).collect();
+            prop_assert_eq!(together(&sum), [a + b; NUMBERS]);
+        }
+    }
+
     #[test]
     fn moments_follow_the_right_hand() {
         let mut loads = Loads::NONE;
-        loads.add(3, Part::Friction, [0.0, 2.0], [0.5, 0.0], &SCALE);
+        loads.add(3, Part::Friction, [0.0, 2.0], moment(&[0.5, 0.0], &[0.0, 2.0]), &SCALE);
         let load = SCALE.in_newtons(&loads.of(3));
         assert!((load[7] - 2.0).abs() < 1e-12 && (load[11] - 1.0).abs() < 1e-12, "{load:?}");
         assert_eq!(load[..6], [0.0; 6]);
@@ -143,7 +186,7 @@ mod tests {
             let sum = |some: &[(u16, [f64; 3])]| {
                 let mut loads = Loads::NONE;
                 for (solid, f) in some {
-                    loads.add(*solid, Part::Pressure, *f, [f[1], f[2], 0.1], &SCALE);
+                    loads.add(*solid, Part::Pressure, *f, moment(&[f[1], f[2], 0.1], f), &SCALE);
                 }
                 loads
             };

@@ -1,8 +1,9 @@
 //! A simulation: the particles of one rank and the loop over the steps.
 
+use crate::bodies::{Bodies, Wrench};
 use crate::error::RunError;
 use crate::lio::{Copies, Exchange, Extremes, lio_pass};
-use crate::loads::{LoadScale, Loads};
+use crate::loads::{LoadScale, Loads, WORDS, apart, together};
 use crate::model::{Model, OnLost};
 use crate::passes::{DensityPass, ForcePass, kicked};
 use crate::rank::Rank;
@@ -16,6 +17,7 @@ use crate::timestep::Skin;
 use crate::timings::{Phase, Timings};
 use crate::walls::WallElements;
 use bytemuck::Pod;
+use nalgebra::Vector3;
 use sph_decomp::{Balancer, Collectives, Communicator, Evenness, Exposed, Load, Metered};
 use sph_kernels::Real;
 
@@ -107,6 +109,7 @@ pub struct Simulation<'a, const D: usize, S: Real> {
     load_scale: Option<LoadScale>,
     /// Loads of this rank's fluid in the last step.
     loads: Loads,
+    bodies: Bodies<D>,
 }
 
 impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
@@ -159,8 +162,25 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             timings: Timings::default(),
             load_scale: None,
             loads: Loads::NONE,
+            bodies: Bodies::default(),
             model,
         })
+    }
+
+    /// The same with solids that move, whose state is that at the start of the run or of the checkpoint
+    /// that it goes on from.
+    #[must_use]
+    pub fn with_bodies(mut self, bodies: Bodies<D>) -> Self {
+        if !bodies.is_empty() {
+            self.load_scale.get_or_insert_with(|| LoadScale::of_model(&self.model));
+        }
+        self.bodies = bodies;
+        self
+    }
+
+    /// The solids that move.
+    pub fn bodies(&self) -> &Bodies<D> {
+        &self.bodies
     }
 
     /// Whether the next step begins with new lists: the moment when a checkpoint can be taken,
@@ -307,6 +327,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         let staged = report.then(|| self.stage());
         self.force_pass(dt_before, dt)?;
         let full_step = staged.map(|staged| self.complete(staged, dt_before));
+        self.move_bodies(dt_before, dt)?;
         self.counters.steps += 1;
         let fluid = self.rank.fluid.owned();
         self.counters.particle_updates += fluid as u64;
@@ -350,7 +371,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         let division = review.divide.then_some(review.rate);
         let encoder = self.encoder();
         let (comm, team, model) = (&self.comm, &self.team, &self.model);
-        let gone = self.rank.rebuild(comm, team, model, &encoder, division)?;
+        let gone = self.rank.rebuild(comm, team, model, &encoder, division, &self.bodies)?;
         self.rank.make_room(self.scheme.shifting.is_some());
         self.at_rebuild = (self.counters.steps, self.exposed);
         Ok(gone)
@@ -427,6 +448,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             loads: self.load_scale,
             dt_before,
             dt,
+            bodies: &self.bodies,
         };
         let exchange =
             Exchange { comm: &self.comm, halo: view.force_halo, plan: view.plan, maxima: &mut [] };
@@ -445,9 +467,34 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         Ok(())
     }
 
+    /// Moves the bodies on, from the loads of the fluid of all ranks. Collective.
+    fn move_bodies(&mut self, dt_before: f64, dt: f64) -> Result<(), RunError> {
+        let Some(scale) = self.load_scale.filter(|_| !self.bodies.is_empty()) else {
+            return Ok(());
+        };
+        let free: Vec<u16> = self.bodies.free().collect();
+        let own = free.iter().map(|&solid| self.loads.of(solid)).collect::<Vec<_>>();
+        let mut words: Vec<u64> = own.iter().flat_map(apart).collect();
+        if !free.is_empty() {
+            self.comm.sum_u64(&mut words)?;
+        }
+        let load = |solid: u16| {
+            let at = free.iter().position(|other| *other == solid).unwrap_or(0);
+            let newtons = scale.in_newtons(&together(&words[WORDS * at..WORDS * (at + 1)]));
+            let both = |k: usize| Vector3::from_fn(|i, _| newtons[k + i] + newtons[6 + k + i]);
+            Wrench { force: both(0), moment: both(3) }
+        };
+        let time = self.clock.time;
+        self.bodies.advance(time, [dt_before, dt], &self.model.gravity, load);
+        let encoder = self.encoder();
+        self.bodies.place(&mut self.rank.walls, &encoder);
+        Ok(())
+    }
+
     /// The next step, and whether it uses up the skin. `extremes` are those of the last force pass:
     /// one step old, so that their reduction could hide behind the density pass.
     fn choose_step(&mut self, extremes: Extremes) -> Result<f64, RunError> {
+        let extremes = extremes.max(self.bodies.extremes());
         let acceleration = extremes.acceleration2.sqrt();
         // A shift is at most half of the largest speed, of the step before.
         let moves = match self.scheme.shifting {

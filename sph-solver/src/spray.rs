@@ -16,9 +16,10 @@ use crate::terms::DensityRate;
 /// half, a right-angled edge of fluid one quarter.
 const SPRAY: f64 = 0.3;
 
-/// Fluid and walls fill more than this of the space around a particle that is away from the free
-/// surface.
-const INSIDE: f64 = 0.75;
+/// Fluid fills more than this of the space around a particle away from the free surface that is not wall.
+/// Of that space alone: in a narrow gap between two walls there is little of it, and air in the rest is a
+/// free surface all the same.
+const INSIDE: f64 = 0.7;
 
 /// Whether a particle has torn off from the body of the fluid.
 #[inline]
@@ -29,7 +30,7 @@ pub fn is_spray(around: &DensityRate) -> bool {
 /// Whether a particle is away from the free surface.
 #[inline]
 pub fn is_inside(around: &DensityRate) -> bool {
-    around.fluid + around.wall > INSIDE
+    around.fluid > INSIDE * (1.0 - around.wall)
 }
 
 #[cfg(test)]
@@ -50,5 +51,6 @@ mod tests {
     fn a_wall_holds_what_is_not_at_the_surface() {
         assert!(is_inside(&around(0.5, 0.5)) && is_inside(&around(1.0, 0.0)));
         assert!(!is_inside(&around(0.5, 0.0)) && !is_inside(&around(0.25, 0.5)));
+        assert!(!is_inside(&around(0.1, 0.8)));
     }
 }

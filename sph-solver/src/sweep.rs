@@ -7,6 +7,7 @@
 //! its neighbours one after the other in canonical order, and its sums depend neither on threads,
 //! nor on ranks, nor on the width of the lanes, nor on who shares its cluster.
 
+use crate::bodies::Frame;
 use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
 use crate::space::{Metric, PairScale};
 use crate::terms::{
@@ -59,6 +60,10 @@ pub struct Beside<'a, const D: usize> {
     pub lowest_pressure: &'a [f64],
     /// ∇p/ρ at each target, m/s².
     pub pressure_gradient: &'a [[f64; D]],
+    /// Position of each target, m.
+    pub position: &'a [[f64; D]],
+    /// How the wall moves; none for a wall at rest.
+    pub frame: Option<&'a Frame<D>>,
 }
 
 /// Elements of a wall: their records hold the normal in the words of velocity and the depth below
@@ -152,16 +157,25 @@ where
         let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
         let to_q: L = lanes(scale.unit / scale.support_radius);
         let Self { records, list, term, beside, .. } = *self;
-        let Beside { lowest_pressure, pressure_gradient } = beside;
+        let Beside { lowest_pressure, pressure_gradient, position: places, frame } = beside;
         let last = own.end - 1;
         let of_lanes = |f: &dyn Fn(usize) -> f64| -> L {
             let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f((own.start + l).min(last))));
             L::load(&all)
         };
-        let beside = BesideWall {
+        let mut beside = BesideWall {
             pressure_gradient: from_fn(|k| of_lanes(&|i| pressure_gradient[i][k])),
             lowest_pressure: of_lanes(&|i| lowest_pressure[i].max(LOWEST)),
+            spin: [L::zero(); 3],
         };
+        // Terms see a wall at rest.
+        let mut target = *target;
+        if let Some(frame) = frame {
+            beside.spin = frame.spin.map(lanes);
+            target.velocity =
+                from_fn(|k| target.velocity[k] - of_lanes(&|i| frame.velocity_at(&places[i])[k]));
+        }
+        let target = &target;
         let mut total = T::zero();
         for &j in list.sources(cluster) {
             let record = &records[j as usize];

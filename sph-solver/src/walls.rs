@@ -1,12 +1,14 @@
-//! Walls at rest, as the fluid sees them.
+//! Walls as the fluid sees them.
 //!
 //! A wall is made of *elements*: the material in each cell of the lattice below the surface of a solid,
 //! with its volume, the normal of the surface and its depth below it. They fill the support of the
-//! fluid beside the wall (see [`WallTerm`](crate::terms::WallTerm)). Elements travel when space is divided and rest in between. Every solid is a set of its own, so that
-//! a particle far from a solid has nothing to do with it, and the sum over a set is the load on its
-//! solid.
+//! fluid beside the wall (see [`WallTerm`](crate::terms::WallTerm)). Elements travel when space is
+//! divided and rest in between; those of a solid that moves are known to all ranks and move rigidly (see
+//! [`bodies`](crate::bodies)). Every solid is a set of its own, so that a particle far from a solid has
+//! nothing to do with it, and the sum over a set is the load on its solid.
 
-use crate::records::{Encoder, Record, record};
+use crate::bodies::Frame;
+use crate::records::{Encoder, QUANTITY, Record, WEIGHT, record};
 use sph_decomp::Columns;
 use sph_geometry::{Domain, Lattice, LatticeError, Solid, wall_elements};
 use sph_kernels::Real;
@@ -44,14 +46,31 @@ impl<const D: usize> WallElements<D> {
         first_id: u64,
     ) -> Result<Self, LatticeError> {
         let walls = wall_elements(solids, lattice, support_radius, domain)?;
-        Ok(Self {
-            id: (0..walls.positions.len()).map(|k| first_id + k as u64).collect(),
-            solid: walls.solids.iter().map(|&solid| solid as u16).collect(),
-            volume: walls.volumes,
-            depth: walls.depths,
-            position: walls.positions,
-            normal: walls.normals,
-        })
+        let solid = walls.solids.iter().map(|&solid| solid as u16).collect();
+        Ok(Self { solid, ..Self::of_body(&walls, 0, first_id) })
+    }
+
+    /// The elements of one solid of this number, as [`sph_geometry::body_elements`] makes them.
+    pub fn of_body(walls: &sph_geometry::WallElements<D>, solid: u16, first_id: u64) -> Self {
+        let count = walls.positions.len();
+        Self {
+            id: (0..count as u64).map(|k| first_id + k).collect(),
+            solid: vec![solid; count],
+            volume: walls.volumes.clone(),
+            depth: walls.depths.clone(),
+            position: walls.positions.clone(),
+            normal: walls.normals.clone(),
+        }
+    }
+
+    /// Appends other elements.
+    pub fn extend(&mut self, other: &Self) {
+        self.id.extend_from_slice(&other.id);
+        self.solid.extend_from_slice(&other.solid);
+        self.volume.extend_from_slice(&other.volume);
+        self.depth.extend_from_slice(&other.depth);
+        self.position.extend_from_slice(&other.position);
+        self.normal.extend_from_slice(&other.normal);
     }
 
     /// Number of elements.
@@ -128,6 +147,15 @@ pub struct WallSet<const D: usize, S> {
     /// Elements near every owned fluid particle.
     pub near: ClusterList,
     cells: CellList<D>,
+    motion: Option<Motion<D>>,
+}
+
+/// How a set moves.
+#[derive(Debug, Clone)]
+struct Motion<const D: usize> {
+    frame: Frame<D>,
+    /// Number among the elements of the body of each record.
+    elements: Vec<u32>,
 }
 
 impl<const D: usize, S: Real> WallSet<D, S> {
@@ -140,25 +168,67 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         let mut order: Vec<u32> = (0..elements.len() as u32).collect();
         order.sort_by_key(|&i| elements.solid[i as usize]);
         let same = |a: &u32, b: &u32| elements.solid[*a as usize] == elements.solid[*b as usize];
-        let of_one = |some: &[u32]| {
-            let mut own = elements.some(some);
-            let mut cells = CellList::build(grid, &own.position, &own.id);
-            // Neighbours in space shall be neighbours in memory.
-            own.keep(cells.order());
-            cells.rebuild(grid, &own.position, &own.id);
-            let write = |i: usize| {
-                let weight = encoder.weight(own.volume[i]);
-                let motion = encoder.motion(&own.position[i], &own.normal[i]);
-                record(motion, S::from_f64(own.depth[i]), weight)
-            };
-            Self {
-                solid: own.solid[0],
-                records: (0..own.len()).map(write).collect(),
-                near: ClusterList::default(),
-                cells,
-            }
-        };
+        let of_one = |some: &[u32]| Self::of_one(elements.some(some), grid, encoder).0;
         order.chunk_by(same).map(of_one).collect()
+    }
+
+    /// The set of the elements of one solid that moves, of which `first` is the lowest id.
+    pub fn moving(
+        elements: &WallElements<D>,
+        first: u64,
+        frame: Frame<D>,
+        grid: &Grid<D>,
+        encoder: &Encoder<D, S>,
+    ) -> Self {
+        let (set, sorted) = Self::of_one(elements.clone(), grid, encoder);
+        let elements = sorted.id.iter().map(|id| (id - first) as u32).collect();
+        Self { motion: Some(Motion { frame, elements }), ..set }
+    }
+
+    /// The set of elements of one solid, and the elements in the order of its records.
+    fn of_one(
+        mut own: WallElements<D>,
+        grid: &Grid<D>,
+        encoder: &Encoder<D, S>,
+    ) -> (Self, WallElements<D>) {
+        let mut cells = CellList::build(grid, &own.position, &own.id);
+        // Neighbours in space shall be neighbours in memory.
+        own.keep(cells.order());
+        cells.rebuild(grid, &own.position, &own.id);
+        let write = |i: usize| {
+            let weight = encoder.weight(own.volume[i]);
+            let motion = encoder.motion(&own.position[i], &own.normal[i]);
+            record(motion, S::from_f64(own.depth[i]), weight)
+        };
+        let set = Self {
+            solid: own.solid.first().copied().unwrap_or(0),
+            records: (0..own.len()).map(write).collect(),
+            near: ClusterList::default(),
+            cells,
+            motion: None,
+        };
+        (set, own)
+    }
+
+    /// The frame in which the set rests; none for one that rests anyway.
+    pub fn frame(&self) -> Option<&Frame<D>> {
+        self.motion.as_ref().map(|motion| &motion.frame)
+    }
+
+    /// Moves a set to where the places and normals of its elements are, which `element` tells by their
+    /// numbers. A set at rest stays.
+    pub fn place(
+        &mut self,
+        frame: Frame<D>,
+        encoder: &Encoder<D, S>,
+        element: impl Fn(usize) -> ([f64; D], [f64; D]),
+    ) {
+        let Some(motion) = &mut self.motion else { return };
+        motion.frame = frame;
+        for (place, index) in self.records.iter_mut().zip(&motion.elements) {
+            let (position, normal) = element(*index as usize);
+            *place = record(encoder.motion(&position, &normal), place[QUANTITY], place[WEIGHT]);
+        }
     }
 
     /// Where the elements are.
@@ -173,6 +243,10 @@ impl<const D: usize, S: Real> WallSet<D, S> {
 
     /// Bytes in use.
     pub fn bytes(&self) -> usize {
-        self.records.len() * size_of::<Record<S>>() + self.near.bytes() + self.cells.bytes()
+        let moving = self.motion.as_ref().map_or(0, |motion| 4 * motion.elements.len());
+        self.records.len() * size_of::<Record<S>>()
+            + self.near.bytes()
+            + self.cells.bytes()
+            + moving
     }
 }

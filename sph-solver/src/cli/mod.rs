@@ -15,8 +15,8 @@ mod partition;
 mod progress;
 mod report;
 mod run;
-mod study;
 mod shell;
+mod study;
 
 use crate::scene::{Scene, SceneError};
 use clap::{Args, Parser, Subcommand};

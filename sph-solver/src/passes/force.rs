@@ -1,6 +1,7 @@
 use crate::block::Block;
+use crate::bodies::Bodies;
 use crate::lio::{Extremes, Pass};
-use crate::loads::{LoadScale, Loads, Part};
+use crate::loads::{LoadScale, Loads, Part, moment};
 use crate::model::Model;
 use crate::passes::{Surroundings, add};
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, record};
@@ -29,6 +30,8 @@ pub struct ForcePass<'a, const D: usize, S> {
     pub dt_before: f64,
     /// Step that begins here, s.
     pub dt: f64,
+    /// Solids that move.
+    pub bodies: &'a Bodies<D>,
 }
 
 /// `v + dt (a + g)`: one kick, used for every half step so that all of them round alike.
@@ -79,14 +82,22 @@ impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
             let (Some(scale), Some(solid)) = (&self.loads, self.model.solid(wall.solid)) else {
                 return;
             };
+            // Moments are about a point that goes with the solid.
+            let center = wall.frame().map_or(&solid.center, |frame| &frame.center);
             for (k, Acceleration(a)) in own.iter().enumerate() {
                 if a.iter().all(|a| *a == 0.0) {
                     continue;
                 }
                 let force = a.map(|a| -targets.mass[k] * a);
                 let periods = &self.around.scale.periods;
-                let arm = space::offset(&targets.position[k], &solid.center, periods);
-                loads.add(wall.solid, part, force, arm, scale);
+                let arm = space::offset(&targets.position[k], center, periods);
+                let turning = match (part, wall.frame()) {
+                    (Part::Pressure, Some(_)) => {
+                        self.bodies.across(wall.solid, &targets.position[k], force)
+                    }
+                    _ => force,
+                };
+                loads.add(wall.solid, part, force, moment(&arm, &turning), scale);
             }
         });
     }

@@ -24,6 +24,7 @@ use crate::block::{Block, Targets};
 use crate::groups::{GroupSum, GroupView};
 use crate::records::Record;
 use crate::space::PairScale;
+use crate::sweep::Beside;
 use crate::terms::{Rate, VectorSum};
 use crate::walls::WallSet;
 use sph_neighbors::ClusterList;
@@ -39,7 +40,7 @@ pub struct Surroundings<'a, const D: usize, S> {
     pub scale: &'a PairScale<D>,
 }
 
-impl<const D: usize, S> Surroundings<'_, D, S> {
+impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
     /// Sets the rates of a block to the sum over its fluid neighbours, whose records are in `old`.
     fn sum_fluid<R: Rate>(
         &self,
@@ -72,7 +73,7 @@ impl<const D: usize, S> Surroundings<'_, D, S> {
                 sources: &wall.records,
                 list: &wall.near,
                 scale: self.scale,
-                beside: Some(targets.beside),
+                beside: Some(Beside { frame: wall.frame(), ..targets.beside }),
             };
             if sum.sum(view, targets.first, targets.density, &mut own) {
                 part(wall, &own);

@@ -3,6 +3,7 @@
 use super::costs::{FLUID_COST, USUAL_NEIGHBOURS, WALL_COST};
 use super::traveller::{Traveller, arrive, depart, place};
 use super::{Rank, record_of};
+use crate::bodies::Bodies;
 use crate::error::RunError;
 use crate::model::Model;
 use crate::records::Encoder;
@@ -15,6 +16,7 @@ use sph_decomp::{
     Askew, Communicator, Halo, HaloPlan, MaxReach, Orb, Partition, Parts, Reach, Zone, ZoneOptions,
     migrate,
 };
+use sph_geometry::Aabb;
 use sph_kernels::Real;
 use sph_neighbors::{CellList, ClusterList, Clusters, ColumnOrder, Grid};
 
@@ -32,7 +34,8 @@ const JUMP: f64 = 8.0;
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Brings the particles to their owners, finds the overlap zone, sorts, and builds the lists.
     /// Returns the particles that have left the domain; they are gone. With `division`, space is
-    /// divided anew, and the particles of this rank weigh that many times their cost. Collective.
+    /// divided anew, and the particles of this rank weigh that many times their cost. `bodies` become walls
+    /// where they are now. Collective.
     pub fn rebuild(
         &mut self,
         comm: &dyn Communicator,
@@ -40,6 +43,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         model: &Model<D>,
         encoder: &Encoder<D, S>,
         division: Option<f64>,
+        bodies: &Bodies<D>,
     ) -> Result<Vec<(u64, [f64; D])>, RunError> {
         let gone = self.remove_outside(model);
         for x in &mut self.state.position {
@@ -60,6 +64,11 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         } else {
             State::default()
         };
+        self.walls.retain(|wall| wall.frame().is_none());
+        if !bodies.is_empty() {
+            let fluid = Aabb::around(&self.state.position);
+            self.walls.extend(bodies.sets(&grid, encoder, &fluid, model.reach()));
+        }
         team.install(|| self.build_lists(&grid, model.reach(), &outer));
         if sorts {
             self.compactness = self.near_fluid.compactness();

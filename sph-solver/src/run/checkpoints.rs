@@ -52,6 +52,8 @@ pub struct Kept<const D: usize> {
     pub progress: Progress,
     /// Loads on solids, as [`LoadLog::save`](super::load_log::LoadLog::save) gave them.
     pub loads: Vec<f64>,
+    /// Solids that move, as [`Bodies::save`](crate::bodies::Bodies::save) gave them.
+    pub bodies: Vec<f64>,
 }
 
 /// Whole checkpoints that are kept; older ones are removed.
@@ -66,12 +68,10 @@ pub fn path<const D: usize>(plan: &RunPlan<D>, step: u64) -> PathBuf {
 pub fn save<const D: usize>(
     comm: &dyn Communicator,
     plan: &RunPlan<D>,
-    state: State<D>,
-    clock: Clock,
-    progress: Progress,
-    loads: Vec<f64>,
+    kept: Kept<D>,
 ) -> Result<(), RunError> {
-    let mut columns = state.into_columns();
+    let Kept { fluid, clock, progress, loads, bodies } = kept;
+    let mut columns = fluid.into_columns();
     gather_by_id(comm, &mut columns, |columns| columns.0.clone())?;
     if comm.rank() != 0 {
         return Ok(());
@@ -93,6 +93,7 @@ pub fn save<const D: usize>(
         .with_attribute("checkpoint_interval", progress.checkpoints.interval())
         .with_attribute("lost_particles", progress.lost)
         .with_attribute("loads", loads)
+        .with_attribute("bodies", bodies)
         .with_attribute("identity", plan.identity.particles.to_text())
         .with_attribute("settings", plan.identity.settings.to_text())
         .with_attribute("simd", sph_kernels::simd_level())
@@ -113,6 +114,8 @@ pub struct Loaded<const D: usize> {
     pub progress: Progress,
     /// Loads on solids, as [`LoadLog::save`](super::load_log::LoadLog::save) gave them.
     pub loads: Vec<f64>,
+    /// Solids that move, as [`Bodies::save`](crate::bodies::Bodies::save) gave them.
+    pub bodies: Vec<f64>,
 }
 
 /// Particles of this rank, clock and progress from the latest whole checkpoint. The number of ranks
@@ -200,7 +203,8 @@ fn load_here<const D: usize>(
         pressure_gradient: file.column::<[f64; D]>("pressure_gradient")?.to_vec(),
     };
     let loads = attributes.f64_array("loads")?.to_vec();
-    Ok(Loaded { state, clock, progress, loads })
+    let bodies = attributes.f64_array("bodies")?.to_vec();
+    Ok(Loaded { state, clock, progress, loads, bodies })
 }
 
 /// Notes what is not as it was when the checkpoint was written.

@@ -10,6 +10,7 @@ use super::plan::RunPlan;
 use super::samples::{self, Budget};
 use super::schedule::Schedule;
 use super::stop::StopReason;
+use crate::bodies::Bodies;
 use crate::error::RunError;
 use crate::loads::LoadScale;
 use crate::model::Model;
@@ -70,25 +71,39 @@ pub struct Finished<const D: usize> {
     pub fastest: (f64, f64),
 }
 
-/// Runs one rank to the end. Collective. `state` is the share of the initial particles of this
-/// rank; a resumed run drops it for that of the checkpoint.
+/// What one rank begins with: its share of the initial particles, and all that move as one. A resumed run
+/// drops the fluid for that of the checkpoint.
+#[derive(Debug)]
+pub struct Start<const D: usize> {
+    /// Fluid.
+    pub state: State<D>,
+    /// Elements of walls at rest.
+    pub elements: WallElements<D>,
+    /// Solids that move.
+    pub bodies: Bodies<D>,
+}
+
+/// Runs one rank to the end. Collective.
 pub fn drive<'a, const D: usize, S: Real + Pod>(
     comm: &'a dyn Communicator,
     team: Team,
     model: Model<D>,
     scheme: Scheme<D, S>,
-    (state, elements): (State<D>, WallElements<D>),
+    Start { state, elements, mut bodies }: Start<D>,
     plan: &RunPlan<D>,
     watch: &(dyn Fn(Status) + Sync),
 ) -> Result<(Simulation<'a, D, S>, Finished<D>), RunError> {
     let start = Instant::now();
     let cpu_start = cpu_seconds();
     let solids = model.solids.len();
-    let mut loads = LoadLog::new(solids, load_scale(&model));
+    let mut loads = LoadLog::new(solids, LoadScale::of_model(&model));
     let (state, clock, progress) = if plan.resume {
         drop(state);
         let loaded = checkpoints::load(comm, plan)?;
         loads.restore(&loaded.loads);
+        if !bodies.restore(&loaded.bodies) {
+            return Err(RunError::OtherBodies { path: plan.out.clone() });
+        }
         (loaded.state, Some(loaded.clock), loaded.progress)
     } else {
         (state, None, Progress::start(plan))
@@ -99,7 +114,13 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
     if comm.rank() == 0 {
         clear(plan, resumed_at.is_some())?;
     }
-    let names: Vec<&str> = model.solids.iter().map(|solid| solid.name.as_str()).collect();
+    let moving: Vec<u16> = bodies.kinematics().iter().map(|(solid, _)| *solid).collect();
+    let names = model
+        .solids
+        .iter()
+        .zip(0..)
+        .map(|(solid, number)| (solid.name.as_str(), moving.contains(&number)));
+    let names: Vec<(&str, bool)> = names.collect();
     let mut files =
         if comm.rank() == 0 { Some(Files::open(plan, &names, written_until)?) } else { None };
     let mut out = Outputs {
@@ -118,7 +139,8 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
         compressed: false,
     };
     let mut stopping = None;
-    let mut simulation = Simulation::new(comm, team, model, scheme, state, elements, clock)?;
+    let mut simulation =
+        Simulation::new(comm, team, model, scheme, state, elements, clock)?.with_bodies(bodies);
     if solids > 0 {
         simulation.count_loads(out.loads.scale());
     }
@@ -193,12 +215,6 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
             exposed_seconds: simulation.exposed().wait_seconds,
         });
     }
-}
-
-fn load_scale<const D: usize>(model: &Model<D>) -> LoadScale {
-    let density0 = model.equation_of_state.density0();
-    let mass = density0 * model.spacing.powi(D as i32);
-    LoadScale::new(mass, model.spacing, model.limits.sound_speed)
 }
 
 /// Takes away what an earlier run left in the folder and could be mistaken for a result of this one.
@@ -300,9 +316,14 @@ impl<const D: usize> Outputs<'_, D> {
         // Also makes sure that no rank has met a fault: a bad state never becomes a checkpoint.
         let clock = simulation.clock()?;
         self.checkpoints.done(clock.time);
-        let loads = self.loads.save(self.comm)?;
-        let state = simulation.state();
-        checkpoints::save(self.comm, self.plan, state, clock, self.progress(), loads)?;
+        let kept = Kept {
+            fluid: simulation.state(),
+            clock,
+            progress: self.progress(),
+            loads: self.loads.save(self.comm)?,
+            bodies: simulation.bodies().save(),
+        };
+        checkpoints::save(self.comm, self.plan, kept)?;
         self.saved = Some(clock.step);
         self.kept = None;
         Ok(())
@@ -324,7 +345,8 @@ impl<const D: usize> Outputs<'_, D> {
         let mut fluid = self.kept.take().map_or_else(State::default, |kept| kept.fluid);
         fluid.clone_from(&simulation.rank().state);
         let loads = self.loads.save(self.comm)?;
-        self.kept = Some(Kept { fluid, clock, progress: self.progress(), loads });
+        let bodies = simulation.bodies().save();
+        self.kept = Some(Kept { fluid, clock, progress: self.progress(), loads, bodies });
         Ok(())
     }
 
@@ -335,12 +357,13 @@ impl<const D: usize> Outputs<'_, D> {
         simulation: &Simulation<'_, D, S>,
     ) -> Result<bool, RunError> {
         let _timer = simulation.timings().measure(Phase::Output);
-        let Some(Kept { fluid, clock, progress, loads }) = self.kept.take() else {
+        let Some(kept) = self.kept.take() else {
             return Ok(self.plan.keeps_state && self.saved.is_some());
         };
         // No rank has met a fault since, or the run would have ended.
-        checkpoints::save(self.comm, self.plan, fluid, clock, progress, loads)?;
-        self.saved = Some(clock.step);
+        let step = kept.clock.step;
+        checkpoints::save(self.comm, self.plan, kept)?;
+        self.saved = Some(step);
         Ok(true)
     }
 
@@ -417,7 +440,7 @@ impl<const D: usize> Outputs<'_, D> {
             let loads = self.loads.rows(self.comm)?;
             if let Some(files) = files.as_deref_mut() {
                 files.samples(full.time, &budget, &readings)?;
-                files.loads::<D>(full.time, &loads)?;
+                files.loads::<D>(full.time, &loads, &simulation.bodies().kinematics())?;
                 if let Some(errors) = errors {
                     files.errors(full.time, &errors)?;
                 }
@@ -435,7 +458,7 @@ impl<const D: usize> Outputs<'_, D> {
             if let Some(files) = files {
                 let (id, position, velocity, density) = columns;
                 let all = FullStep { id, position, velocity, density, mass: vec![], ..*full };
-                files.snapshot(model, &all)?;
+                files.snapshot(model, &all, &simulation.bodies().in_full_step())?;
             }
             self.snapshots.done(full.time);
         }

@@ -4,6 +4,7 @@ use super::load_log::LoadRow;
 use super::plan::RunPlan;
 use super::samples::Budget;
 use super::snapshot_choice::SnapshotChoice;
+use crate::bodies::Kinematics;
 use crate::error::RunError;
 use crate::loads::NUMBERS;
 use crate::model::Model;
@@ -30,10 +31,10 @@ pub struct Files {
 }
 
 impl Files {
-    /// Opens the outputs of a run; with `resumed_at`, continues those that end at that time (s).
+    /// Opens the outputs of a run with solids of these names, which move or not; with `resumed_at`, continues those that end at that time (s).
     pub fn open<const D: usize>(
         plan: &RunPlan<D>,
-        solids: &[&str],
+        solids: &[(&str, bool)],
         resumed_at: Option<f64>,
     ) -> Result<Self, RunError> {
         let table = |name: &str, columns: &[(&str, &str)]| {
@@ -72,7 +73,13 @@ impl Files {
             probes: probes.collect::<Result<_, _>>()?,
             solids: solids
                 .iter()
-                .map(|name| table(&format!("solid-{name}"), &load_columns(D)))
+                .map(|(name, moves)| {
+                    let mut columns = load_columns(D);
+                    if *moves {
+                        columns.extend(motion_columns(D));
+                    }
+                    table(&format!("solid-{name}"), &columns)
+                })
                 .collect::<Result<_, _>>()?,
             reference: match &plan.reference {
                 Some(reference) => Some(table("reference", &reference.columns())?),
@@ -90,29 +97,18 @@ impl Files {
         walls: &WallElements<D>,
         density0: f64,
     ) -> Result<(), RunError> {
-        // The pressure of a wall is a matter of each pair; 0 keeps the array in every file.
-        let kind: Vec<u16> = walls.solid.iter().map(|solid| FLUID + 1 + solid).collect();
-        let mut frame = ParticleFrame::new(0.0, &walls.position);
-        for field in SnapshotField::ALL {
-            frame = match field {
-                field if !self.choice.has(field) => frame,
-                SnapshotField::Velocity => frame.with("velocity", vec![[0.0_f32; D]; walls.len()]),
-                SnapshotField::Pressure => frame.with("pressure", vec![0.0_f32; walls.len()]),
-                SnapshotField::Density => frame.with("density", vec![density0 as f32; walls.len()]),
-                SnapshotField::Kind => frame.with("kind", &kind),
-                SnapshotField::Id => frame.with("id", &walls.id),
-            };
-        }
+        let frame = wall_frame(&self.choice, 0.0, walls, density0);
         let rows = self.choice.rows(None, &walls.position);
-        let frame = within(frame.with("normal", single(&walls.normal)), rows.as_deref());
+        let frame = within(frame, rows.as_deref());
         Ok(self.series.fixed_part("walls", &self.choice.packed(frame))?)
     }
 
-    /// Writes a snapshot of the fluid.
+    /// Writes a snapshot of the fluid, and of the walls that move if there are any.
     pub fn snapshot<const D: usize>(
         &mut self,
         model: &Model<D>,
         full: &FullStep<D>,
+        moving: &WallElements<D>,
     ) -> Result<(), RunError> {
         let eos = &model.equation_of_state;
         let pressure =
@@ -129,7 +125,12 @@ impl Files {
             };
         }
         let rows = self.choice.rows(Some(&full.id), &full.position);
-        self.series.write(&self.choice.packed(within(frame, rows.as_deref())))?;
+        let frame = self.choice.packed(within(frame, rows.as_deref()));
+        let rows = self.choice.rows(None, &moving.position);
+        let walls = wall_frame(&self.choice, full.time, moving, eos.density0());
+        let walls = self.choice.packed(within(walls, rows.as_deref()));
+        let parts = [("moving", &walls)];
+        self.series.write_parts(&frame, if moving.is_empty() { &[] } else { &parts })?;
         self.snapshots += 1;
         Ok(())
     }
@@ -160,8 +161,13 @@ impl Files {
     }
 
     /// Appends a row to the table of each solid.
-    pub fn loads<const D: usize>(&mut self, time: f64, rows: &[LoadRow]) -> Result<(), RunError> {
-        for (table, row) in self.solids.iter_mut().zip(rows) {
+    pub fn loads<const D: usize>(
+        &mut self,
+        time: f64,
+        rows: &[LoadRow],
+        moving: &[(u16, Kinematics)],
+    ) -> Result<(), RunError> {
+        for ((table, row), solid) in self.solids.iter_mut().zip(rows).zip(0..) {
             let total = |load: &[f64; NUMBERS], k: usize| load[k] + load[6 + k];
             let (forces, moments) = load_axes(D);
             let mut numbers = Vec::new();
@@ -170,6 +176,9 @@ impl Files {
             }
             numbers.extend(forces.map(|k| row.now[6 + k]));
             numbers.push(row.largest);
+            if let Some((_, kinematics)) = moving.iter().find(|(number, _)| *number == solid) {
+                numbers.extend(motion_row(D, kinematics));
+            }
             table.row(time, &numbers)?;
         }
         Ok(())
@@ -200,6 +209,64 @@ fn within<'a, const D: usize>(
         Some(rows) => frame.select(rows),
         None => frame,
     }
+}
+
+/// Elements of walls as a part of a snapshot.
+fn wall_frame<'a, const D: usize>(
+    choice: &SnapshotChoice,
+    time: f64,
+    walls: &'a WallElements<D>,
+    density0: f64,
+) -> ParticleFrame<'a, D> {
+    // The pressure of a wall is a matter of each pair; 0 keeps the array in every file.
+    let kind = || walls.solid.iter().map(|solid| FLUID + 1 + solid).collect::<Vec<u16>>();
+    let mut frame = ParticleFrame::new(time, &walls.position);
+    for field in SnapshotField::ALL {
+        frame = match field {
+            field if !choice.has(field) => frame,
+            SnapshotField::Velocity => frame.with("velocity", vec![[0.0_f32; D]; walls.len()]),
+            SnapshotField::Pressure => frame.with("pressure", vec![0.0_f32; walls.len()]),
+            SnapshotField::Density => frame.with("density", vec![density0 as f32; walls.len()]),
+            SnapshotField::Kind => frame.with("kind", kind()),
+            SnapshotField::Id => frame.with("id", &walls.id),
+        };
+    }
+    frame.with("normal", single(&walls.normal))
+}
+
+/// What the table of a solid that moves says of its motion, besides the load on it.
+fn motion_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
+    let vectors = [
+        (["x", "y", "z"], "m"),
+        (["velocity_x", "velocity_y", "velocity_z"], "m/s"),
+        (["acceleration_x", "acceleration_y", "acceleration_z"], "m/s2"),
+    ];
+    let of = |(names, unit): ([&'static str; 3], &'static str)| {
+        names.into_iter().take(dimension).map(move |name| (name, unit))
+    };
+    let mut columns: Vec<_> = vectors.into_iter().flat_map(of).collect();
+    let turns = [
+        (["rotation_x", "rotation_y", "rotation_z"], "rad"),
+        (["spin_x", "spin_y", "spin_z"], "rad/s"),
+    ];
+    for (names, unit) in turns {
+        let skipped = if dimension == 2 { 2 } else { 0 };
+        columns.extend(names.into_iter().skip(skipped).map(|name| (name, unit)));
+    }
+    columns
+}
+
+/// The numbers under [`motion_columns`]. The rotation is a vector along the axis, as long as the angle.
+fn motion_row(dimension: usize, kinematics: &Kinematics) -> Vec<f64> {
+    let Kinematics { rigid, acceleration } = kinematics;
+    let mut row = Vec::new();
+    for vector in [&rigid.position, &rigid.velocity, acceleration] {
+        row.extend(vector.iter().take(dimension));
+    }
+    for vector in [rigid.orientation.scaled_axis(), rigid.spin] {
+        row.extend(vector.iter().skip(if dimension == 2 { 2 } else { 0 }));
+    }
+    row
 }
 
 /// Snapshots are for the eye: single precision halves them.

@@ -115,6 +115,15 @@ fn particles<const D: usize>(scene: &Scene, all: &Particles<D>) -> Values {
             fields(&format!("{path}.regions.{index}"), velocity, pressure);
         }
     }
+    for solid in &scene.solid {
+        let path = format!("solid {}", *solid.name);
+        if let Some(motion) = &solid.motion {
+            values.set(format!("{path}.motion"), &word(&motion.value));
+        }
+        if let Some(body) = &solid.body {
+            values.set(format!("{path}.body"), &word(&body.value));
+        }
+    }
     values.set("number of particles of the fluid", &all.of_kind(0).len());
     for (solid, kind) in scene.solid.iter().zip(1..) {
         values

@@ -7,8 +7,8 @@ use super::gauges::patch;
 use super::identity::Identity;
 use super::notes::Notes;
 use super::plan::RunPlan;
-use super::reference::FieldReference;
 use super::record::Record;
+use super::reference::FieldReference;
 use super::samples::{Probe, Quantity};
 use super::shares::Shares;
 use super::snapshot_choice::SnapshotChoice;
@@ -16,6 +16,7 @@ use super::stop::Stop;
 use super::summary::{Meta, Summary};
 use super::table::{Features, Job, Precision, Viscosity, run_job};
 use super::world::World;
+use crate::bodies::Bodies;
 use crate::error::RunError;
 use crate::model::{Model, OnLost, SolidModel};
 use crate::scene::{self, At, Field, ProbeKind, Scene};
@@ -94,6 +95,7 @@ struct Launch<const D: usize> {
     /// About the scene.
     notes: Vec<String>,
     shares: Shares<D>,
+    bodies: Bodies<D>,
     model: Model<D>,
     features: Features,
     /// Everything that determines the bits of the result: all ranks must have the same.
@@ -108,7 +110,8 @@ impl<const D: usize> Launch<D> {
     fn new(scene: &Scene, options: &RunOptions, stop: Stop) -> Result<Self, RunError> {
         let setup = Setup::<D>::new(scene)?;
         let notes = setup.notes();
-        let Setup { particles, constants, solids, .. } = setup;
+        let Setup { particles, constants, solids, bodies, at_rest, .. } = setup;
+        let moving = bodies.iter().map(|body| body.solid).collect();
         let features = features(scene, &constants, &particles);
         let model = model(&constants, solids);
         let fingerprint = fingerprint(&model, &features, &particles);
@@ -138,8 +141,20 @@ impl<const D: usize> Launch<D> {
         };
         let (ranks, threads) = (options.ranks, options.threads);
         let blocking = options.blocking;
-        let shares = Shares::new(particles, ranks.unwrap_or(1));
-        Ok(Self { notes, fingerprint, shares, model, features, plan, ranks, threads, blocking })
+        let shares = Shares::new(particles, moving, ranks.unwrap_or(1));
+        let bodies = Bodies::new(bodies, at_rest, model.domain.0, model.periods);
+        Ok(Self {
+            notes,
+            bodies,
+            fingerprint,
+            shares,
+            model,
+            features,
+            plan,
+            ranks,
+            threads,
+            blocking,
+        })
     }
 
     /// Refuses ranks that cannot be, before anything is written.
@@ -210,6 +225,7 @@ impl<const D: usize> Launch<D> {
                 plan: &self.plan,
                 state,
                 elements,
+                bodies: self.bodies.clone(),
                 watch: if comm.rank() == 0 { watch } else { &silent },
                 meta: Meta {
                     name: self.plan.name.clone(),

@@ -12,14 +12,16 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Debug)]
 pub struct Shares<const D: usize> {
     len: usize,
+    /// Numbers of the solids that move, of which every rank has all.
+    moving: Vec<u16>,
     /// The particles, and how many ranks of this process have not taken their share yet.
     rest: Mutex<(Particles<D>, usize)>,
 }
 
 impl<const D: usize> Shares<D> {
-    /// For so many ranks in this process.
-    pub fn new(particles: Particles<D>, ranks: usize) -> Self {
-        Self { len: particles.len(), rest: Mutex::new((particles, ranks)) }
+    /// For so many ranks in this process. Solids of the numbers `moving` are shared out to nobody.
+    pub fn new(particles: Particles<D>, moving: Vec<u16>, ranks: usize) -> Self {
+        Self { len: particles.len(), moving, rest: Mutex::new((particles, ranks)) }
     }
 
     /// Number of particles of all shares.
@@ -33,7 +35,12 @@ impl<const D: usize> Shares<D> {
         let (all, ranks) = &mut *rest;
         let fluid = all.fluid().len();
         let state = all.state(share(comm, fluid));
-        let walls = all.walls(share(comm, all.len() - fluid));
+        let mut walls = all.walls(share(comm, all.len() - fluid));
+        if !self.moving.is_empty() {
+            let rests = |&i: &u32| !self.moving.contains(&walls.solid[i as usize]);
+            let kept: Vec<u32> = (0..walls.len() as u32).filter(rests).collect();
+            walls.keep(&kept);
+        }
         *ranks = ranks.saturating_sub(1);
         if *ranks == 0 {
             *all = Particles::default();
@@ -60,7 +67,7 @@ mod tests {
         let scene = Scene::parse("a.toml", text.into(), &[]).unwrap();
         let particles = Setup::<2>::new(&scene).unwrap().particles;
         let expected: Vec<u64> = (0..particles.len() as u64).collect();
-        let shares = Shares::new(particles, 3);
+        let shares = Shares::new(particles, vec![], 3);
         let taken = ThreadRanks::run(3, |comm| {
             let (state, walls) = shares.take(&comm);
             Ok::<_, String>([state.id, walls.id].concat())

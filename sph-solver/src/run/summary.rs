@@ -191,7 +191,9 @@ pub fn summarize<const D: usize, S: Real + Pod>(
     let exposed = simulation.exposed();
     let mut counts = [
         fluid.owned() as u64,
-        solid.owned() as u64,
+        // Every rank knows all of those that move.
+        solid.owned() as u64
+            + if comm.rank() == 0 { simulation.bodies().elements() as u64 } else { 0 },
         counters.particle_updates,
         counters.pairs,
         rank.bytes() as u64,

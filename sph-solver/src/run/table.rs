@@ -4,9 +4,10 @@
 //! itself, so that choices add up and do not multiply; library users compose a
 //! [`Scheme`] themselves.
 
-use super::driver::{Status, drive};
+use super::driver::{Start, Status, drive};
 use super::plan::RunPlan;
 use super::summary::{Meta, Summary, summarize};
+use crate::bodies::Bodies;
 use crate::error::RunError;
 use crate::model::Model;
 use crate::scheme::Scheme;
@@ -70,6 +71,8 @@ pub struct Job<'a, const D: usize> {
     pub state: State<D>,
     /// Elements of walls that this rank begins with.
     pub elements: WallElements<D>,
+    /// Solids that move, as they are at the start.
+    pub bodies: Bodies<D>,
     /// Called after each step.
     pub watch: &'a (dyn Fn(Status) + Sync),
     /// What the summary says about the set-up.
@@ -89,8 +92,9 @@ fn run_in<const D: usize, S: Real + Pod>(
     features: &Features,
 ) -> Result<Summary, RunError> {
     let scheme = delta_scheme::<D, S>(&job.model, features);
-    let Job { comm, team, model, plan, state, elements, watch, meta } = job;
-    let (simulation, finished) = drive(comm, team, model, scheme, (state, elements), plan, watch)?;
+    let Job { comm, team, model, plan, state, elements, bodies, watch, meta } = job;
+    let start = Start { state, elements, bodies };
+    let (simulation, finished) = drive(comm, team, model, scheme, start, plan, watch)?;
     summarize(comm, &simulation, &finished, meta)
 }
 

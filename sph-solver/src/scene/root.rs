@@ -44,7 +44,7 @@ pub struct Scene {
     /// Fluids by name; exactly one for now.
     #[serde(default)]
     pub fluid: BTreeMap<String, At<Fluid>>,
-    /// Walls that do not move.
+    /// Walls, at rest or moving.
     #[serde(default)]
     pub solid: Vec<At<Solid>>,
     /// Numbers written down while the run goes on.

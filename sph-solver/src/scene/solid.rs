@@ -1,12 +1,13 @@
-//! `[[solid]]`: walls that do not move.
+//! `[[solid]]`: walls, at rest or moving.
 
 use super::located::At;
+use super::motion::{Body, Motion};
 use super::shape::with_shape_keys;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 with_shape_keys! {
-    /// A solid that does not move: exactly one shape.
+    /// A solid: exactly one shape. It rests unless it has a `motion` or is a `body`.
     Solid {
         /// Name of the solid.
         name: At<String>,
@@ -17,8 +18,13 @@ with_shape_keys! {
         /// slips and a fluid with a viscosity does not.
         wall_friction: Option<At<WallFriction>>,
         /// The point that the moments of the load on this solid are about, m. The middle of its
-        /// bounding box when absent; the origin along axes where that has no end.
+        /// bounding box when absent; the origin along axes where that has no end. For a solid that
+        /// moves it is the point that the solid turns about or its centre of mass, and goes with it.
         moments_about: Option<At<Vec<f64>>>,
+        /// How the solid moves, whatever the fluid does.
+        motion: Option<At<Motion>>,
+        /// What the solid weighs and what holds it, when the fluid moves it.
+        body: Option<At<Body>>,
     }
 }
 

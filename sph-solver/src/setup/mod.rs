@@ -12,6 +12,7 @@ mod fluid;
 mod geometry;
 mod jitter;
 mod memory;
+mod moving;
 mod neighbours;
 mod notes;
 mod overlap;
@@ -38,16 +39,17 @@ pub use report::{
 };
 pub use sampling::{BlockKind, Sample};
 
+use crate::bodies::Body;
 use crate::eos::EquationOfState;
 use crate::model::SolidModel;
 use crate::scene::{self, At, Equation, ErrorKind, Fluid, Kernel, Region, Scene, SceneError};
 use fluid::Filling;
 use shapes::Shapes;
-use sph_geometry::{Aabb, Lattice, LatticeError, lattice_inside};
+use sph_geometry::{Aabb, Lattice, LatticeError, Solid, lattice_inside};
 use sph_kernels::{Kernel as _, WendlandC2};
 
 /// What a run begins with.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Setup<const D: usize> {
     /// All particles, in the order of their ids.
     pub particles: Particles<D>,
@@ -55,6 +57,10 @@ pub struct Setup<const D: usize> {
     pub constants: Constants<D>,
     /// The solids; the particles of solid k have kind 1 + k.
     pub solids: Vec<SolidModel<D>>,
+    /// Those of them that move, with their wall particles.
+    pub bodies: Vec<Body<D>>,
+    /// Those that rest, as geometry.
+    pub at_rest: Vec<Solid<D>>,
     /// Largest speed expected in the run, m/s.
     pub expected_speed: f64,
     /// Largest speed at the start, m/s.
@@ -94,7 +100,8 @@ impl<const D: usize> Setup<D> {
         let support = Geometry::<D>::support(scene);
         notes.extend(notes::on_probes(scene, &domain, &solids, &filling.position, support));
         let gravity = scene.gravity();
-        let initial_speed = filling.largest_speed();
+        let mut bodies = moving::bodies(scene, &solids)?;
+        let initial_speed = filling.largest_speed().max(moving::largest_speed(scene, &bodies));
         let expected_speed = expected_speed(&gravity, height(&gravity, &fluid_box), initial_speed);
         let sound_speed = constants::sound_speed(scene, numerics, expected_speed)?;
         let density0 = *fluid.density;
@@ -129,7 +136,7 @@ impl<const D: usize> Setup<D> {
         };
         let mass = density0 * spacing.powi(D as i32);
         let mut particles = filling.finish(scene, fluid, &equation_of_state, &lattice, mass)?;
-        walls::add_walls(scene, &solids, &lattice, &constants, &mut particles)
+        walls::add_walls(scene, &solids, &mut bodies, &lattice, &constants, &mut particles)
             .map_err(|error| sizes::explain(error, scene, &solids, &regions, &meshes))?;
         sizes::without_particles(scene, &solids, &regions, &meshes, &domain, &particles)?;
         notes.extend(thickness::notes(scene, &solids, &domain, &particles));
@@ -137,6 +144,8 @@ impl<const D: usize> Setup<D> {
             particles,
             constants,
             solids: walls::models(scene, &solids),
+            at_rest: moving::at_rest(scene, &solids),
+            bodies,
             expected_speed,
             initial_speed,
             volume_of_regions: volume::of_regions(&regions, &solids),

@@ -75,6 +75,18 @@ impl<const D: usize> Particles<D> {
         start..self.kind.partition_point(|other| *other <= kind)
     }
 
+    /// Adds the place of an element of a wall; volume and depth follow.
+    pub(super) fn push_wall(
+        &mut self,
+        position: [f64; D],
+        density: f64,
+        kind: u16,
+        normal: [f64; D],
+    ) {
+        self.push(position, [0.0; D], density, 0.0, kind);
+        self.normal.push(normal);
+    }
+
     pub(super) fn push(
         &mut self,
         position: [f64; D],

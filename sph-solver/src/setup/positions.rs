@@ -1,6 +1,6 @@
 //! Positions without the rest of the state, for reports on fields of many particles.
 
-use super::{Geometry, domain, fill, nothing, overlap, walls};
+use super::{Geometry, domain, fill, moving, nothing, overlap, walls};
 use crate::scene::{Scene, SceneError};
 
 /// Memory that reports on positions take per particle at their peak, bytes.
@@ -34,6 +34,10 @@ impl<const D: usize> Positions<D> {
         let walls = walls::find_walls(scene, solids, lattice, &geometry.domain, support)?;
         let fluid = position.len();
         position.extend_from_slice(&walls.positions);
+        for mut body in moving::bodies(scene, solids)? {
+            moving::add_elements(scene, &mut body, lattice, support, 0)?;
+            position.extend_from_slice(&body.elements.position);
+        }
         Ok(Self { position, fluid })
     }
 }

@@ -3,7 +3,8 @@
 use super::constants::Constants;
 use super::particles::Particles;
 use super::shapes::Shapes;
-use super::{LARGEST, MOST_PARTICLES, lattice_error, memory, too_many};
+use super::{LARGEST, MOST_PARTICLES, lattice_error, memory, moving, too_many};
+use crate::bodies::Body;
 use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
 use sph_geometry::{
@@ -81,17 +82,23 @@ pub fn is_closed<const D: usize>(
 pub fn add_walls<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
+    bodies: &mut [Body<D>],
     lattice: &Lattice<D>,
     constants: &Constants<D>,
     particles: &mut Particles<D>,
 ) -> Result<(), SceneError> {
     let bounds = Aabb::new(constants.domain.0, constants.domain.1);
-    let walls = find_walls(scene, solids, lattice, &bounds, constants.support_radius)?;
-    let total = particles.len() + walls.positions.len();
+    let support = constants.support_radius;
+    let walls = find_walls(scene, solids, lattice, &bounds, support)?;
+    for body in &mut *bodies {
+        moving::add_elements(scene, body, lattice, support, 0)?;
+    }
+    let moving = bodies.iter().map(|body| body.elements.len()).sum::<usize>();
+    let total = particles.len() + walls.positions.len() + moving;
     if total as f64 > MOST_PARTICLES {
         return Err(too_many(scene, total as f64, LARGEST));
     }
-    let needed = memory::to_set_up::<D>(walls.positions.len() as f64);
+    let needed = memory::to_set_up::<D>((walls.positions.len() + moving) as f64);
     if let Some(available) = memory::available().filter(|available| needed > *available) {
         let [needed, available] = [needed, available].map(memory::gibibytes);
         let why = format!("its walls need {needed}, and {available} are free here");
@@ -100,17 +107,31 @@ pub fn add_walls<const D: usize>(
     // Solid by solid; within a solid in the order of the lattice.
     let mut order: Vec<usize> = (0..walls.positions.len()).collect();
     order.sort_by_key(|wall| walls.solids[*wall]);
-    for wall in order {
-        let kind = 1 + walls.solids[wall] as u16;
-        particles.push(walls.positions[wall], [0.0; D], constants.density0, 0.0, kind);
-        particles.normal.push(walls.normals[wall]);
-        particles.volume.push(walls.volumes[wall]);
-        particles.depth.push(walls.depths[wall]);
+    let mut rest = order.into_iter().peekable();
+    let density = constants.density0;
+    for number in 0..solids.len() {
+        while let Some(wall) = rest.next_if(|wall| walls.solids[*wall] as usize == number) {
+            let (position, kind) = (walls.positions[wall], 1 + number as u16);
+            particles.push_wall(position, density, kind, walls.normals[wall]);
+            particles.volume.push(walls.volumes[wall]);
+            particles.depth.push(walls.depths[wall]);
+        }
+        let Some(body) = bodies.iter_mut().find(|body| usize::from(body.solid) == number) else {
+            continue;
+        };
+        let first = particles.len() as u64;
+        let elements = &mut body.elements;
+        elements.id.iter_mut().zip(first..).for_each(|(id, number)| *id = number);
+        for (x, normal) in elements.position.iter().zip(&elements.normal) {
+            particles.push_wall(*x, density, 1 + number as u16, *normal);
+        }
+        particles.volume.extend_from_slice(&elements.volume);
+        particles.depth.extend_from_slice(&elements.depth);
     }
     Ok(())
 }
 
-/// The wall elements within `support` (m) of where fluid can be.
+/// The wall elements of solids at rest within `support` (m) of where fluid can be.
 pub fn find_walls<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
@@ -118,15 +139,21 @@ pub fn find_walls<const D: usize>(
     bounds: &Aabb<D>,
     support: f64,
 ) -> Result<WallElements<D>, SceneError> {
-    if solids.is_empty() {
+    let at_rest = moving::at_rest(scene, solids);
+    if at_rest.is_empty() {
         return Ok(WallElements::default());
     }
     let (domain, place) = searchable(scene, lattice, bounds)?;
-    wall_elements(solids, lattice, support, &domain)
-        .map_err(|error| lattice_error(scene, place, &error))
+    let mut walls = wall_elements(&at_rest, lattice, support, &domain)
+        .map_err(|error| lattice_error(scene, place, &error))?;
+    let moves = moving::moves(scene);
+    let numbers: Vec<u32> =
+        (0..moves.len() as u32).filter(|number| !moves[*number as usize]).collect();
+    walls.solids.iter_mut().for_each(|solid| *solid = numbers[*solid as usize]);
+    Ok(walls)
 }
 
-/// The lattice points in material within `support` (m) of where fluid can be.
+/// The lattice points in material at rest within `support` (m) of where fluid can be.
 pub fn find_cells<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
@@ -134,11 +161,12 @@ pub fn find_cells<const D: usize>(
     bounds: &Aabb<D>,
     support: f64,
 ) -> Result<Vec<[f64; D]>, SceneError> {
-    if solids.is_empty() {
+    let at_rest = moving::at_rest(scene, solids);
+    if at_rest.is_empty() {
         return Ok(Vec::new());
     }
     let (domain, place) = searchable(scene, lattice, bounds)?;
-    wall_particles(solids, lattice, support, &domain)
+    wall_particles(&at_rest, lattice, support, &domain)
         .map(|cells| cells.positions)
         .map_err(|error| lattice_error(scene, place, &error))
 }

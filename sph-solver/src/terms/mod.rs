@@ -87,6 +87,8 @@ pub struct BesideWall<const D: usize, L> {
     pub pressure_gradient: [L; D],
     /// Lowest pressure that the wall may have towards the target, Pa.
     pub lowest_pressure: L,
+    /// Angular velocity of the wall, rad/s. Velocities of targets are those in the frame of the wall.
+    pub spin: [L; 3],
 }
 
 /// Geometry of a pair of a target and an element of a wall, lengths in units of the records unless
@@ -290,7 +292,12 @@ pub(crate) mod scalar {
         lowest_pressure: f64,
     ) -> Q::Rate<2> {
         let mut total = T::zero();
-        term.add(i, &BesideWall { pressure_gradient, lowest_pressure }, pair, &mut total);
+        term.add(
+            i,
+            &BesideWall { pressure_gradient, lowest_pressure, spin: [0.0; 3] },
+            pair,
+            &mut total,
+        );
         let sum = term.finish(i, &total);
         let mut rates = [Q::Rate::default()];
         Q::rates(&sum, &[i.density], &mut rates);

@@ -4,8 +4,9 @@ use sph_kernels::Lanes;
 /// Friction of a wall at rest that does not let the fluid slip:
 /// dv_i/dt += (2 μ/ρ_i) Σ_w (v_i − v_iw)_t F_iw V_w, ∇W_iw = F_iw r_iw, with the velocity of the wall
 /// element continued linearly from the fluid through zero at the surface:
-/// v_i − v_iw = v_i (d_i + d_w)/d_i, d_i the distance of the particle from the surface, d_w the depth of
-/// the element. Only the part along the wall acts; the pressure of the wall takes care of the other.
+/// v_i − v_iw = (v_i + d_i Ω × n) (d_i + d_w)/d_i, d_i the distance of the particle from the surface, d_w
+/// the depth of the element. v_i is the velocity in the frame of a wall that spins with Ω; what spins with
+/// it feels nothing together with the fluid behind. Only the part along the wall acts; the pressure of the wall takes care of the other.
 ///
 /// Source: Morris, Fox & Zhu (1997), J. Comput. Phys. 136, eq. 22–24, whose wall velocities these are.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +30,7 @@ impl<const D: usize> WallTerm<D, Pressure> for NoSlip {
     fn add<L: Lanes>(
         &self,
         i: &Target<D, L>,
-        _: &BesideWall<D, L>,
+        beside: &BesideWall<D, L>,
         pair: &WallPair<D, L>,
         sum: &mut [L; D],
     ) {
@@ -41,7 +42,10 @@ impl<const D: usize> WallTerm<D, Pressure> for NoSlip {
             lanes::<L>(2.0 * self.dynamic_viscosity) * pair.weight * pair.per_unit * stretch;
         let along = dot(&i.velocity, &pair.normal);
         for (k, sum) in sum.iter_mut().enumerate() {
-            let tangential = i.velocity[k] - along * pair.normal[k];
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            let normal = |k: usize| if k < D { pair.normal[k] } else { L::zero() };
+            let spinning = beside.spin[a] * normal(b) - beside.spin[b] * normal(a);
+            let tangential = distance.mul_add(spinning, i.velocity[k] - along * pair.normal[k]);
             *sum = factor.mul_add(tangential, *sum);
         }
     }

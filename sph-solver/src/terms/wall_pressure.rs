@@ -42,8 +42,8 @@ impl<const D: usize> WallTerm<D, Pressure> for WallPressure {
         let speed = -dot(&i.velocity, &pair.normal);
         let limited = (speed.max(-speed) * lanes(6.0)).min(lanes(self.sound_speed));
         let dissipation = (speed + speed) * i.density * limited;
-        let even = pressures - change + dissipation;
-        total.add(-even, -change, pair);
+        total.add(change - pressures, -change, pair);
+        total.damp(-dissipation, pair);
     }
 
     #[inline(always)]

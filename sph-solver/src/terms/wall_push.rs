@@ -47,6 +47,17 @@ impl<const D: usize, L: Lanes> WallPush<D, L> {
         self.weight += pair.weight;
     }
 
+    /// Adds what an element does along its own normal alone, with the coefficient `along`: a damping of the
+    /// velocity along the normal must act along it too. Along the line to the element it would drive on what
+    /// flows around a ball.
+    #[inline(always)]
+    pub fn damp(&mut self, along: L, pair: &WallPair<D, L>) {
+        let size = along * pair.weight * dot(&pair.offset, &pair.normal);
+        for k in 0..D {
+            self.push[k] = size.mul_add(pair.normal[k], self.push[k]);
+        }
+    }
+
     /// Σ c w r as the particle feels it.
     #[inline(always)]
     pub fn felt(&self) -> [L; D] {
@@ -98,6 +109,18 @@ mod tests {
         let mut push = WallPush::<2, f64>::zero();
         push.add(0.0, 1.0, &pair([1.0, 2.0], [0.0, 1.0], -2.0));
         assert_eq!(push.felt(), [-2.0, -4.0]);
+    }
+
+    #[test]
+    fn damping_takes_energy_from_what_flows_around_a_ball() {
+        // Elements of a ball to the left and to the right below a particle that moves to the right.
+        let mut push = WallPush::<2, f64>::zero();
+        for side in [-1.0, 1.0] {
+            let normal = [0.6 * side, 0.8];
+            let speed = -normal[0];
+            push.damp(-speed, &pair([-0.5 * side, 1.0], normal, -2.0));
+        }
+        assert!(push.felt()[0] < 0.0, "{:?}", push.felt());
     }
 
     #[test]

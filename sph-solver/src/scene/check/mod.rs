@@ -1,5 +1,6 @@
 //! What types cannot say: ranges, dimensions, names, contradictions.
 
+mod motion;
 mod outputs;
 mod periodic;
 mod reference;
@@ -9,7 +10,7 @@ mod values;
 use super::document::Place;
 use super::error::{ErrorKind, SceneError};
 use super::fluid::{Fluid, Pressure};
-use super::formula::Formula;
+use super::formula::{Formula, FormulaError};
 use super::located::At;
 use super::numerics::{Numerics, SoundSpeed};
 use super::root::Scene;
@@ -48,6 +49,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
         values.unique("solid", &solid.name, &mut names)?;
         shapes::solid(&values, index, solid)?;
         walls(&values, index, solid)?;
+        motion::check(&values, index, solid)?;
     }
     outputs::probes(&values)?;
     outputs::intervals(&values)?;
@@ -209,12 +211,15 @@ fn has_gravity(scene: &Scene) -> bool {
 }
 
 fn formula(values: &Values<'_>, formula: &Formula, place: Place) -> Result<(), SceneError> {
-    formula.check(values.scene.dimension()).map_err(|error| {
-        let kind = ErrorKind::Formula {
-            formula: formula.text().into(),
-            reason: error.reason,
-            help: error.help,
-        };
-        values.scene.error(place, kind)
-    })
+    let found = formula.check(values.scene.dimension());
+    found.map_err(|error| refuse(values, formula, place, error))
+}
+
+fn formula_of_time(values: &Values<'_>, formula: &Formula, place: Place) -> Result<(), SceneError> {
+    formula.check_of_time().map_err(|error| refuse(values, formula, place, error))
+}
+
+fn refuse(values: &Values<'_>, formula: &Formula, place: Place, error: FormulaError) -> SceneError {
+    let FormulaError { reason, help } = error;
+    values.scene.error(place, ErrorKind::Formula { formula: formula.text().into(), reason, help })
 }
