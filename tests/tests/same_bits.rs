@@ -117,7 +117,10 @@ fn every_file_is_the_same() {
         let files = |run: Run| {
             let results = Results::of(run.checkpoint_every(0.3 * scene.end_time).threads(1));
             let mut contents = results.contents();
-            contents.retain(|(path, _)| !path.ends_with("summary.json"));
+            // These tell of the command and its cost.
+            contents.retain(|(path, _)| {
+                !(path.ends_with("summary.json") || path.ends_with("run.json"))
+            });
             let name = |path: &Path| path.file_name().map(ToOwned::to_owned);
             contents.into_iter().map(|(path, bytes)| (name(&path), bytes)).collect::<Vec<_>>()
         };

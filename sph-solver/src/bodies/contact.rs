@@ -344,6 +344,7 @@ mod tests {
         let total = (a.velocity + b.velocity) * 3.0;
         assert!((total - Vector3::new(1.5, 0.0, 0.0)).norm() < 1e-12, "{total}");
         assert!(a.velocity.x < b.velocity.x + 0.1, "{a:?} {b:?}");
-        assert!(b.position.x - a.position.x > 0.41);
+        // They turn, so that corners meet sides.
+        assert!(b.position.x - a.position.x > 0.3, "{a:?} {b:?}");
     }
 }

@@ -1,7 +1,7 @@
 //! Prescribed motion: where a solid is at a given time, whatever the fluid does.
 
 use super::rigid::Rigid;
-use crate::scene::Formula;
+use crate::scene::TimedFormula;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 
 /// A prescribed motion.
@@ -28,9 +28,9 @@ pub enum Path {
     /// Formulas in t, relative to the place at t = 0.
     Formulas {
         /// Displacement along x, y and z, m.
-        displacement: Box<[Formula; 3]>,
+        displacement: Box<[TimedFormula; 3]>,
         /// Angle about the axis, rad.
-        angle: Formula,
+        angle: TimedFormula,
     },
     /// Rows of a table.
     Table(Vec<Row>),
@@ -126,8 +126,8 @@ mod tests {
 
     #[test]
     fn formulas_are_relative_to_the_start() {
-        let displacement = Box::new(["cos(t)", "0", "0"].map(Formula::new));
-        let course = course(Path::Formulas { displacement, angle: Formula::new("2*t") });
+        let displacement = Box::new(["cos(t)", "0", "0"].map(TimedFormula::new));
+        let course = course(Path::Formulas { displacement, angle: TimedFormula::new("2*t") });
         assert_eq!(course.at(0.0), Rigid::at(Vector3::new(1.0, 0.0, 0.0)));
         assert!((course.at(1.0).position.x - 1.0_f64.cos()).abs() < 1e-15);
         let step = course.step(1.0, 1e-4);

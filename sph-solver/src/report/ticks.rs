@@ -17,7 +17,11 @@ impl Ticks {
         let step = round_step((high - low) / wanted.max(1) as f64);
         let first = (low / step - 1e-9).ceil() as i64;
         let last = (high / step + 1e-9).floor() as i64;
-        let values = (first..=last).take(100).map(|k| k as f64 * step).collect();
+        let values = (0..100_i64)
+            .map(|k| first.saturating_add(k))
+            .take_while(|k| *k <= last)
+            .map(|k| k as f64 * step)
+            .collect();
         let largest = low.abs().max(high.abs());
         let power = if largest >= 1e4 || (largest < 1e-2 && largest > 0.0) {
             3 * (largest.log10() / 3.0).floor() as i32

@@ -113,6 +113,7 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
     let written_until = resumed_at.map(f64::next_down);
     if comm.rank() == 0 {
         clear(plan, resumed_at.is_some())?;
+        plan.record.clone().write(&plan.out, resumed_at.is_some())?;
     }
     let moving: Vec<u16> = bodies.kinematics().iter().map(|(solid, _)| *solid).collect();
     let names = model

@@ -85,8 +85,6 @@ fn run_in<const D: usize>(
     if let Some(note) = folder.as_ref().and_then(RunFolder::note) {
         options.notes.add(note);
     }
-    let record = Record::new(scene, launch.plan.end_time, options.command.as_deref());
-    world.once(|| record.write(&options.out, options.existing == Existing::Resume))?;
     launch.notes.iter().for_each(|note| options.notes.add(note.as_str()));
     launch.run(world, watch)
 }
@@ -122,6 +120,7 @@ impl<const D: usize> Launch<D> {
             name: scene.name().to_owned(),
             scene_text: scene.text().to_owned(),
             identity: Identity::new(scene, &particles, end_time, checkpoints),
+            record: Record::new(scene, end_time, options.command.as_deref()),
             out: options.out.clone(),
             end_time,
             snapshots: output.snapshots.as_deref().copied(),

@@ -2,6 +2,7 @@
 
 use super::identity::Identity;
 use super::notes::Notes;
+use super::record::Record;
 use super::reference::FieldReference;
 use super::samples::Probe;
 use super::snapshot_choice::SnapshotChoice;
@@ -17,6 +18,8 @@ pub struct RunPlan<const D: usize> {
     pub scene_text: String,
     /// What a run that goes on from a checkpoint must share with it, and what it may change.
     pub identity: Identity,
+    /// What was asked for.
+    pub record: Record,
     /// Folder for all files.
     pub out: PathBuf,
     /// Time at which the run ends, s.

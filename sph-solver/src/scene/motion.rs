@@ -1,6 +1,6 @@
 //! `motion` and `body` of a `[[solid]]`: what makes it move.
 
-use super::formula::Formula;
+use super::formula::TimedFormula;
 use super::located::At;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,9 +16,9 @@ pub struct Motion {
     /// Constant angular velocity about `axis`, rad/s.
     pub spin: Option<At<f64>>,
     /// Displacement along the axes as formulas in t (s), m; zero is the place at t = 0.
-    pub displacement: Option<At<Vec<At<Formula>>>>,
+    pub displacement: Option<At<Vec<At<TimedFormula>>>>,
     /// Angle about `axis` as a formula in t (s), rad; zero is the angle at t = 0.
-    pub rotation: Option<At<Formula>>,
+    pub rotation: Option<At<TimedFormula>>,
     /// A CSV file, relative to the folder of the scene, with a line of titles: `time` (s), and any of `x`,
     /// `y`, `z` (displacement, m) and `angle` (about `axis`, rad).
     pub table: Option<At<PathBuf>>,

@@ -2,7 +2,7 @@
 
 use super::lattice_error;
 use crate::bodies::{Body, Course, Free, Guide, Path, Rigid, Row, Spring, in_space};
-use crate::scene::{self, At, Degree, ErrorKind, Formula, Motion, Place, Scene, SceneError};
+use crate::scene::{self, At, Degree, ErrorKind, Motion, Place, Scene, SceneError, TimedFormula};
 use crate::walls::WallElements;
 use nalgebra::{Matrix3, Unit, Vector3};
 use sph_geometry::{Aabb, Lattice, Solid, body_elements, shape_mass_properties};
@@ -103,11 +103,13 @@ fn prescribed<const D: usize>(
         (None, displacement, rotation) => {
             let component = |k: usize| {
                 let formula = displacement.as_ref().and_then(|all| all.get(k));
-                formula.map_or_else(Formula::default, |formula| formula.value.clone())
+                formula.map_or_else(TimedFormula::default, |formula| formula.value.clone())
             };
             Path::Formulas {
                 displacement: Box::new(std::array::from_fn(component)),
-                angle: rotation.as_ref().map_or_else(Formula::default, |angle| angle.value.clone()),
+                angle: rotation
+                    .as_ref()
+                    .map_or_else(TimedFormula::default, |angle| angle.value.clone()),
             }
         }
     };

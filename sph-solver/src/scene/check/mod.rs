@@ -10,7 +10,7 @@ mod values;
 use super::document::Place;
 use super::error::{ErrorKind, SceneError};
 use super::fluid::{Fluid, Pressure};
-use super::formula::{Formula, FormulaError};
+use super::formula::{Formula, FormulaError, TimedFormula};
 use super::located::At;
 use super::numerics::{Numerics, SoundSpeed};
 use super::root::Scene;
@@ -212,14 +212,18 @@ fn has_gravity(scene: &Scene) -> bool {
 
 fn formula(values: &Values<'_>, formula: &Formula, place: Place) -> Result<(), SceneError> {
     let found = formula.check(values.scene.dimension());
-    found.map_err(|error| refuse(values, formula, place, error))
+    found.map_err(|error| refuse(values, formula.text(), place, error))
 }
 
-fn formula_of_time(values: &Values<'_>, formula: &Formula, place: Place) -> Result<(), SceneError> {
-    formula.check_of_time().map_err(|error| refuse(values, formula, place, error))
+fn formula_of_time(
+    values: &Values<'_>,
+    formula: &TimedFormula,
+    place: Place,
+) -> Result<(), SceneError> {
+    formula.check_of_time().map_err(|error| refuse(values, formula.text(), place, error))
 }
 
-fn refuse(values: &Values<'_>, formula: &Formula, place: Place, error: FormulaError) -> SceneError {
+fn refuse(values: &Values<'_>, formula: &str, place: Place, error: FormulaError) -> SceneError {
     let FormulaError { reason, help } = error;
-    values.scene.error(place, ErrorKind::Formula { formula: formula.text().into(), reason, help })
+    values.scene.error(place, ErrorKind::Formula { formula: formula.into(), reason, help })
 }

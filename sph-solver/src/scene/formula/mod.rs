@@ -19,7 +19,7 @@ use std::f64::consts::{E, PI};
 pub use parse::FormulaError;
 pub use timed::TimedFormula;
 
-/// A formula in the coordinates x, y, z (m), or in the time t (s).
+/// A formula in the coordinates x, y, z (m).
 #[derive(Debug, Clone)]
 pub struct Formula {
     text: String,
@@ -48,10 +48,7 @@ enum Step {
 }
 
 /// Names of the variables, in order.
-const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
-
-/// Place of the time among the variables.
-const TIME: usize = 3;
+const VARIABLES: [&str; 3] = ["x", "y", "z"];
 
 const CONSTANTS: [(&str, f64); 2] = [("pi", PI), ("e", E)];
 
@@ -104,13 +101,8 @@ impl Formula {
 
     /// What is wrong with the formula in a scene of so many dimensions, if anything.
     pub fn check(&self, dimension: usize) -> Result<(), FormulaError> {
-        if self.uses(TIME)? {
-            return Err(FormulaError {
-                reason: "it uses t, but it holds at the start alone".into(),
-                help: "use x, y and z".into(),
-            });
-        }
-        if dimension < 3 && self.uses(2)? {
+        let program = self.parsed.as_ref().map_err(Clone::clone)?;
+        if dimension < 3 && program.uses(2) {
             return Err(FormulaError {
                 reason: "it uses z, but the scene has dimension = 2".into(),
                 help: "use x and y".into(),
@@ -119,33 +111,9 @@ impl Formula {
         Ok(())
     }
 
-    /// What is wrong with the formula where only the time t can be meant, if anything.
-    pub fn check_of_time(&self) -> Result<(), FormulaError> {
-        for (axis, name) in VARIABLES.iter().enumerate().take(TIME) {
-            if self.uses(axis)? {
-                return Err(FormulaError {
-                    reason: format!("it uses {name}, but it is a function of time"),
-                    help: "use t, in seconds".into(),
-                });
-            }
-        }
-        Ok(())
-    }
-
-    fn uses(&self, variable: usize) -> Result<bool, FormulaError> {
-        let program = self.parsed.as_ref().map_err(Clone::clone)?;
-        let is = |step: &Step| matches!(step, Step::Variable(used) if *used == variable);
-        Ok(program.steps.iter().any(is))
-    }
-
     /// Whether the formula is the plain number 0.
     pub fn is_zero(&self) -> bool {
         matches!(&self.parsed, Ok(program) if matches!(program.steps[..], [Step::Number(0.0)]))
-    }
-
-    /// The value of a formula in t at a time (s). NaN where the formula is undefined or could not be read.
-    pub fn at_time(&self, time: f64) -> f64 {
-        self.at(&[0.0, 0.0, 0.0, time])
     }
 
     /// The value at a point. NaN where the formula is undefined or could not be read.
@@ -298,8 +266,7 @@ mod tests {
         for (text, reason, help) in [
             ("", "it is empty", "0"),
             ("2*siin(x)", "unknown function `siin`", "did you mean `sin`?"),
-            ("2*s", "unknown name `s`", "`x`, `y`, `z`"),
-            ("2*t", "it uses t", ""),
+            ("2*t", "unknown name `t`", "`x`, `y`, `z`"),
             ("2x", "`x` after a complete expression (character 2)", "2*x"),
             ("(x + 1", "a parenthesis is not closed", ")"),
             ("x + ", "it ends where a value should follow", ""),

@@ -3,6 +3,7 @@
 use super::{Formula, FormulaError, FormulaVisitor, functions};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer};
+use serde::{Serialize, Serializer};
 use std::borrow::Cow;
 
 /// A formula in the coordinates x, y, z (m), the time t (s) and `start`, the first value of the
@@ -57,6 +58,28 @@ impl TimedFormula {
         }
     }
 
+    /// What is wrong with a function of time alone, if anything.
+    ///
+    /// # Errors
+    ///
+    /// A formula that cannot be read or uses anything but t.
+    pub fn check_of_time(&self) -> Result<(), FormulaError> {
+        let program = self.0.parsed.as_ref().map_err(Clone::clone)?;
+        let used = VARIABLES.iter().zip(0..).find(|(name, at)| **name != "t" && program.uses(*at));
+        match used {
+            Some((name, _)) => Err(FormulaError {
+                reason: format!("it uses {name}, but it is a function of time"),
+                help: "use t, in seconds".into(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// The value of a function of time alone at a time (s).
+    pub fn at_time(&self, time: f64) -> f64 {
+        self.of_column(time, f64::NAN)
+    }
+
     /// The value at a point (m) and a time (s).
     pub fn at<const D: usize>(&self, x: &[f64; D], time: f64) -> f64 {
         let coordinate = |axis: usize| x.get(axis).copied().unwrap_or(0.0);
@@ -66,6 +89,18 @@ impl TimedFormula {
     /// The value at a time (s), of a column that begins with `start`.
     pub fn of_column(&self, time: f64, start: f64) -> f64 {
         self.0.evaluate(&[f64::NAN, f64::NAN, f64::NAN, time, start])
+    }
+}
+
+impl Default for TimedFormula {
+    fn default() -> Self {
+        Self::new("0")
+    }
+}
+
+impl Serialize for TimedFormula {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.serialize(serializer)
     }
 }
 
