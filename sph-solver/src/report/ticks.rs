@@ -24,7 +24,7 @@ impl Ticks {
             .collect();
         let largest = low.abs().max(high.abs());
         let power = if largest >= 1e4 || (largest < 1e-2 && largest > 0.0) {
-            3 * (largest.log10() / 3.0).floor() as i32
+            3 * (largest.log10() / 3.0).floor().clamp(-103.0, 103.0) as i32
         } else {
             0
         };
