@@ -23,6 +23,6 @@ pub use error::IoError;
 pub use frame::{Compression, ParticleFrame};
 pub use pvd::{PvdEntry, PvdIndex};
 pub use series::SnapshotSeries;
-pub use table::{Table, TableWriter, read_csv, read_table};
+pub use table::{Table, TableWriter, read_table};
 pub use vtu::write_vtu;
 pub use vtu_read::{Snapshot, SnapshotColumn, read_vtu};

@@ -160,40 +160,18 @@ impl Table {
 pub fn read_table(path: impl AsRef<Path>) -> Result<Table, IoError> {
     let path = path.as_ref();
     let text = fs::read_to_string(path).map_err(IoError::read(path))?;
-    parse(path, whole_lines(&text))
-}
-
-/// Reads a table of numbers from elsewhere: a line of titles, then rows of as many numbers with commas
-/// between them. Spaces around them, empty lines and a byte-order mark do no harm, and the last row needs
-/// no line end.
-///
-/// # Errors
-///
-/// As [`read_table`].
-pub fn read_csv(path: impl AsRef<Path>) -> Result<Table, IoError> {
-    let path = path.as_ref();
-    let text = fs::read_to_string(path).map_err(IoError::read(path))?;
-    let text = text.trim_start_matches('\u{feff}');
-    parse(path, text.lines())
-}
-
-fn parse<'a>(path: &Path, mut lines: impl Iterator<Item = &'a str>) -> Result<Table, IoError> {
+    let mut lines = whole_lines(&text);
     let head = lines.next().ok_or_else(|| text_error(path, 1, "the table has no head".into()))?;
     let (names, units): (Vec<String>, Vec<String>) = head
         .split(',')
-        .map(str::trim)
         .map(|title| match title.strip_suffix(']').and_then(|t| t.split_once(" [")) {
             Some((name, unit)) => (name.to_owned(), unit.to_owned()),
             None => (title.to_owned(), String::new()),
         })
         .unzip();
-    let value_of = |cell: &str| match cell.trim() {
-        "" => Ok(f64::NAN),
-        cell => cell.parse(),
-    };
+    let value_of = |cell: &str| if cell.is_empty() { Ok(f64::NAN) } else { cell.parse() };
     let rows = lines
         .zip(2..)
-        .filter(|(line, _)| !line.trim().is_empty())
         .map(|(line, number)| {
             let row: Result<Vec<f64>, _> = line.split(',').map(value_of).collect();
             match row {

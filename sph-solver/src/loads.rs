@@ -4,7 +4,9 @@
 //! of a tiny quantum, so that their sum is the same on any number of ranks and threads, and momentum
 //! that the fluid gains is momentum that the solids lose, to the last bit of the quantum.
 
+use crate::bodies::in_space;
 use crate::model::Model;
+use sph_decomp::{CommError, Communicator};
 
 /// Parts of a load: what the pressure does and what the friction does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,19 +54,31 @@ impl LoadScale {
     }
 }
 
-/// Words of a load on its way between ranks.
-pub const WORDS: usize = 4 * NUMBERS;
+/// Words of a load on its way between ranks: four of 32 bits for each number, so that those of many ranks
+/// add up without overflow.
+const WORDS: usize = 4 * NUMBERS;
 
-/// A load on its way: four words of 32 bits for each number, so that those of many ranks add up without
-/// overflow.
-pub fn apart(quanta: &Quanta) -> impl Iterator<Item = u64> + '_ {
-    let words =
-        |number: i128| (0..4).map(move |k| (number as u128 >> (32 * k)) as u64 & 0xffff_ffff);
-    quanta.iter().flat_map(move |number| words(*number))
+/// The sums over all ranks of loads that each rank has a part of, in the same order. Collective.
+///
+/// # Errors
+///
+/// When communication fails.
+pub fn on_all_ranks(
+    comm: &dyn Communicator,
+    parts: impl IntoIterator<Item = Quanta>,
+) -> Result<Vec<Quanta>, CommError> {
+    let mut words: Vec<u64> = parts.into_iter().flat_map(apart).collect();
+    comm.sum_u64(&mut words)?;
+    Ok(words.chunks_exact(WORDS).map(together).collect())
 }
 
-/// Back from the sums of what [`apart`] gave; `words` are [`WORDS`].
-pub fn together(words: &[u64]) -> Quanta {
+fn apart(quanta: Quanta) -> impl Iterator<Item = u64> {
+    quanta
+        .into_iter()
+        .flat_map(|number| (0..4).map(move |k| (number as u128 >> (32 * k)) as u64 & 0xffff_ffff))
+}
+
+fn together(words: &[u64]) -> Quanta {
     let number = |words: &[u64]| {
         let word = |k: usize| u128::from(words[k]) << (32 * k);
         (0..4).map(word).fold(0_u128, u128::wrapping_add) as i128
@@ -137,11 +151,7 @@ impl Loads {
 
 /// The moment (N m) about x, y and z of a force (N) at `arm` (m).
 pub fn moment<const D: usize>(arm: &[f64; D], force: &[f64; D]) -> [f64; 3] {
-    let of = |v: &[f64; D], k: usize| v.get(k).copied().unwrap_or(0.0);
-    std::array::from_fn(|k| {
-        let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-        of(arm, a) * of(force, b) - of(arm, b) * of(force, a)
-    })
+    in_space(arm).cross(&in_space(force)).into()
 }
 
 /// The nearest whole number. What is out of range has diverged, which the watch for faults reports.
@@ -161,7 +171,7 @@ mod tests {
         #[test]
         fn numbers_survive_the_sum_over_ranks(a in any::<i64>(), b in any::<i64>()) {
             let (a, b) = (i128::from(a) << 40, i128::from(b) << 40);
-            let words = |number: i128| apart(&[number; NUMBERS]).collect::<Vec<_>>();
+            let words = |number: i128| apart([number; NUMBERS]).collect::<Vec<_>>();
             let sum: Vec<u64> = words(a).iter().zip(words(b)).map(|(x, y)| x + y).collect();
             prop_assert_eq!(together(&sum), [a + b; NUMBERS]);
         }

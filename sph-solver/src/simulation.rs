@@ -3,7 +3,7 @@
 use crate::bodies::{Bodies, Wrench};
 use crate::error::RunError;
 use crate::lio::{Copies, Exchange, Extremes, lio_pass};
-use crate::loads::{LoadScale, Loads, WORDS, apart, together};
+use crate::loads::{LoadScale, Loads, on_all_ranks};
 use crate::model::{Model, OnLost};
 use crate::passes::{DensityPass, ForcePass, kicked};
 use crate::rank::Rank;
@@ -17,7 +17,6 @@ use crate::timestep::Skin;
 use crate::timings::{Phase, Timings};
 use crate::walls::WallElements;
 use bytemuck::Pod;
-use nalgebra::Vector3;
 use sph_decomp::{Balancer, Collectives, Communicator, Evenness, Exposed, Load, Metered};
 use sph_kernels::Real;
 
@@ -473,16 +472,11 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             return Ok(());
         };
         let free: Vec<u16> = self.bodies.free().collect();
-        let own = free.iter().map(|&solid| self.loads.of(solid)).collect::<Vec<_>>();
-        let mut words: Vec<u64> = own.iter().flat_map(apart).collect();
-        if !free.is_empty() {
-            self.comm.sum_u64(&mut words)?;
-        }
+        let own = free.iter().map(|&solid| self.loads.of(solid));
+        let all = if free.is_empty() { Vec::new() } else { on_all_ranks(&self.comm, own)? };
         let load = |solid: u16| {
-            let at = free.iter().position(|other| *other == solid).unwrap_or(0);
-            let newtons = scale.in_newtons(&together(&words[WORDS * at..WORDS * (at + 1)]));
-            let both = |k: usize| Vector3::from_fn(|i, _| newtons[k + i] + newtons[6 + k + i]);
-            Wrench { force: both(0), moment: both(3) }
+            let of_solid = free.iter().zip(&all).find(|(other, _)| **other == solid);
+            of_solid.map_or(Wrench::NONE, |(_, quanta)| Wrench::of(&scale.in_newtons(quanta)))
         };
         let time = self.clock.time;
         self.bodies.advance(time, [dt_before, dt], &self.model.gravity, load);

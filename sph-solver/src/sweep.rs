@@ -172,8 +172,10 @@ where
         let mut target = *target;
         if let Some(frame) = frame {
             beside.spin = frame.spin.map(lanes);
+            let walls: [[f64; D]; CLUSTER] =
+                from_fn(|l| frame.velocity_at(&places[(own.start + l).min(last)]));
             target.velocity =
-                from_fn(|k| target.velocity[k] - of_lanes(&|i| frame.velocity_at(&places[i])[k]));
+                from_fn(|k| target.velocity[k] - of_lanes(&|i| walls[i - own.start][k]));
         }
         let target = &target;
         let mut total = T::zero();

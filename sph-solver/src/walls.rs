@@ -174,13 +174,13 @@ impl<const D: usize, S: Real> WallSet<D, S> {
 
     /// The set of the elements of one solid that moves, of which `first` is the lowest id.
     pub fn moving(
-        elements: &WallElements<D>,
+        elements: WallElements<D>,
         first: u64,
         frame: Frame<D>,
         grid: &Grid<D>,
         encoder: &Encoder<D, S>,
     ) -> Self {
-        let (set, sorted) = Self::of_one(elements.clone(), grid, encoder);
+        let (set, sorted) = Self::of_one(elements, grid, encoder);
         let elements = sorted.id.iter().map(|id| (id - first) as u32).collect();
         Self { motion: Some(Motion { frame, elements }), ..set }
     }

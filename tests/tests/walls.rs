@@ -138,14 +138,14 @@ energies = 0.02
     assert!((carried - 1.0).abs() < 0.02, "{carried}");
 }
 
-/// Plane Poiseuille flow between x-periodic sides, started from rest: the series of Batchelor (1967).
-#[test]
-fn poiseuille_flow_starts_as_its_series_says() {
-    let text = r#"name = "poiseuille"
+/// A viscous fluid of 1 m height between two walls, without ends along x; with keys for the scene, the fluid
+/// and both walls, and what is written.
+fn channel(keys: &str, of_fluid: &str, of_walls: &str, output: &str) -> String {
+    format!(
+        r#"name = "channel"
 dimension = 2
-end_time = 1.0
+{keys}
 periodic = ["x"]
-gravity = [0.8, 0]
 [domain]
 min = [0, -0.2]
 max = [0.4, 1.2]
@@ -155,21 +155,24 @@ sound_speed = 10
 [fluid.water]
 density = 1.0
 viscosity = 0.1
-regions = [{ box = { min = [0, 0], max = [0.4, 1] } }]
+{of_fluid}regions = [{{ box = {{ min = [0, 0], max = [0.4, 1] }} }}]
 [[solid]]
 name = "bottom"
-plane = { point = [0, 0], normal = [0, 1] }
-[[solid]]
+plane = {{ point = [0, 0], normal = [0, 1] }}
+{of_walls}[[solid]]
 name = "top"
-plane = { point = [0, 1], normal = [0, -1] }
-[[probe]]
-name = "middle"
-at = [0.2, 0.5]
-fields = ["velocity"]
-[output]
-energies = 0.25
-"#;
-    let results = run(text);
+plane = {{ point = [0, 1], normal = [0, -1] }}
+{of_walls}{output}"#
+    )
+}
+
+/// Plane Poiseuille flow between x-periodic sides, started from rest: the series of Batchelor (1967).
+#[test]
+fn poiseuille_flow_starts_as_its_series_says() {
+    let output = "[[probe]]\nname = \"middle\"\nat = [0.2, 0.5]\nfields = [\"velocity\"]\n\
+                  [output]\nenergies = 0.25\n";
+    let text = channel("end_time = 1.0\ngravity = [0.8, 0]", "", "", output);
+    let results = run(&text);
     let middle = results.table("probe-middle");
     let (times, found) = (middle.times(), middle.column("velocity_x"));
     for (t, u) in times.iter().zip(found).skip(1) {
@@ -189,33 +192,10 @@ energies = 0.25
 
 #[test]
 fn a_viscous_fluid_slips_along_a_wall_that_says_so() {
-    let text = r#"name = "slips"
-dimension = 2
-end_time = 0.4
-periodic = ["x"]
-[domain]
-min = [0, -0.2]
-max = [0.4, 1.2]
-[numerics]
-spacing = 0.05
-sound_speed = 10
-[fluid.water]
-density = 1.0
-viscosity = 0.1
-velocity = ["1", "0"]
-regions = [{ box = { min = [0, 0], max = [0.4, 1] } }]
-[[solid]]
-name = "bottom"
-plane = { point = [0, 0], normal = [0, 1] }
-wall_friction = "slip"
-[[solid]]
-name = "top"
-plane = { point = [0, 1], normal = [0, -1] }
-wall_friction = "slip"
-[output]
-energies = 0.1
-"#;
-    let results = run(text);
+    let slips = "wall_friction = \"slip\"\n";
+    let output = "[output]\nenergies = 0.1\n";
+    let text = channel("end_time = 0.4", "velocity = [\"1\", \"0\"]\n", slips, output);
+    let results = run(&text);
     let energies = results.table("energies");
     // Nothing holds it back.
     for (t, momentum) in energies.times().iter().zip(energies.column("momentum_x")) {

@@ -1,6 +1,7 @@
 //! Merging vertices that are the same point.
 
 use super::{MeshError, TriangleMesh, is_collapsed};
+use crate::vector::distance;
 use std::collections::HashMap;
 
 impl TriangleMesh {
@@ -27,32 +28,57 @@ impl TriangleMesh {
         if tolerance.is_nan() || tolerance <= 0.0 {
             return Self::from_corners((0..self.triangles.len()).map(|t| self.corners(t)));
         }
-        // Cells as wide as the tolerance: what merges lies in neighbouring cells.
-        let cell = |x: &[f64; 3]| x.map(|x| (x / tolerance).floor());
-        let mut cells: HashMap<[u64; 3], Vec<u32>> = HashMap::new();
+        let mut near = Near::new(tolerance);
         let mut kept: Vec<[f64; 3]> = Vec::new();
         let mut merged = Vec::with_capacity(self.vertices.len());
         for x in &self.vertices {
-            let home = cell(x);
-            let earlier = (0..27)
-                .filter_map(|n| {
-                    let shift = [n % 3, n / 3 % 3, n / 9].map(|k| f64::from(k) - 1.0);
-                    cells.get(&key([0, 1, 2].map(|k| home[k] + shift[k])))
-                })
-                .flatten()
-                .copied()
-                .filter(|&v| crate::vector::distance(x, &kept[v as usize]) < tolerance)
-                .min();
+            let earlier = near.earliest(x, |vertex| kept[vertex as usize]);
             merged.push(earlier.unwrap_or_else(|| {
                 // The input has no more vertices than 32 bits count: its indices were checked.
                 let vertex = kept.len() as u32;
                 kept.push(*x);
-                cells.entry(key(home)).or_default().push(vertex);
+                near.add(x, vertex);
                 vertex
             }));
         }
         let triangles = self.triangles.iter().map(|t| t.map(|vertex| merged[vertex as usize]));
         Ok(Self { vertices: kept, triangles: triangles.filter(|t| !is_collapsed(t)).collect() })
+    }
+}
+
+/// Vertices in cells as wide as they may lie apart to merge: what merges lies in neighbouring cells.
+pub(super) struct Near {
+    width: f64,
+    cells: HashMap<[u64; 3], Vec<u32>>,
+}
+
+impl Near {
+    /// No vertices, which merge when they are closer than `width` (m).
+    pub fn new(width: f64) -> Self {
+        Self { width, cells: HashMap::new() }
+    }
+
+    /// The first of the vertices that merge with one at `x`; `place` tells where a vertex is.
+    pub fn earliest(&self, x: &[f64; 3], place: impl Fn(u32) -> [f64; 3]) -> Option<u32> {
+        let home = self.cell(x);
+        (0..27)
+            .filter_map(|n| {
+                let shift = [n % 3, n / 3 % 3, n / 9].map(|k| f64::from(k) - 1.0);
+                self.cells.get(&key([0, 1, 2].map(|k| home[k] + shift[k])))
+            })
+            .flatten()
+            .copied()
+            .filter(|&vertex| distance(x, &place(vertex)) < self.width)
+            .min()
+    }
+
+    /// Adds a vertex at `x`.
+    pub fn add(&mut self, x: &[f64; 3], vertex: u32) {
+        self.cells.entry(key(self.cell(x))).or_default().push(vertex);
+    }
+
+    fn cell(&self, x: &[f64; 3]) -> [f64; 3] {
+        x.map(|x| (x / self.width).floor())
     }
 }
 

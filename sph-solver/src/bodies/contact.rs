@@ -296,9 +296,8 @@ mod tests {
 
     fn run(bodies: &mut Bodies<2>, seconds: f64, gravity: [f64; 2], mut watch: impl FnMut(&Rigid)) {
         let dt = 1e-3;
-        let nothing = Wrench { force: Vector3::zeros(), moment: Vector3::zeros() };
         for step in 0..(seconds / dt) as usize {
-            bodies.advance(step as f64 * dt, [dt, dt], &gravity, |_| nothing);
+            bodies.advance(step as f64 * dt, [dt, dt], &gravity, |_| Wrench::NONE);
             watch(&bodies.all[0].now);
         }
     }

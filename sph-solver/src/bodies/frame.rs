@@ -1,6 +1,8 @@
 //! How a rigid set of wall elements moves at a moment: what a sum over it must know.
 
+use super::{in_scene, in_space};
 use crate::space::offset;
+use nalgebra::Vector3;
 
 /// Velocity and spin of a rigid set.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,11 +29,7 @@ impl<const D: usize> Frame<D> {
 /// Ω × r, of which two dimensions have the part in the plane.
 #[inline]
 pub fn turning<const D: usize>(spin: &[f64; 3], r: &[f64; D]) -> [f64; D] {
-    let at = |k: usize| r.get(k).copied().unwrap_or(0.0);
-    std::array::from_fn(|k| {
-        let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-        spin[a] * at(b) - spin[b] * at(a)
-    })
+    in_scene(&Vector3::from(*spin).cross(&in_space(r)))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use super::rigid::{Rigid, turned};
 use super::spring::Spring;
+use crate::loads::NUMBERS;
 use nalgebra::{Matrix3, Vector3};
 
 /// What a body is made of and what holds it.
@@ -34,6 +35,18 @@ pub struct Wrench {
     pub force: Vector3<f64>,
     /// Moment, N m.
     pub moment: Vector3<f64>,
+}
+
+impl Wrench {
+    /// Nothing acts.
+    pub const NONE: Self =
+        Self { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
+
+    /// That of a load on a solid, pressure and friction together.
+    pub fn of(load: &[f64; NUMBERS]) -> Self {
+        let both = |k: usize| Vector3::from_fn(|i, _| load[k + i] + load[6 + k + i]);
+        Self { force: both(0), moment: both(3) }
+    }
 }
 
 impl Free {
@@ -96,12 +109,6 @@ impl Free {
         along + turn.dot(&self.respond(&body.rotation(), &turn))
     }
 
-    /// The largest angular frequency (rad/s) that its springs make.
-    pub fn fastest_spring(&self) -> f64 {
-        let stiffness: f64 = self.springs.iter().map(|spring| spring.stiffness).sum();
-        (stiffness / self.mass).sqrt()
-    }
-
     fn inertia_of(&self, rotation: &Matrix3<f64>) -> Matrix3<f64> {
         rotation * self.inertia * rotation.transpose()
     }
@@ -141,9 +148,6 @@ mod tests {
         }
     }
 
-    const NOTHING: Wrench =
-        Wrench { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
-
     /// Turns about the middle axis are unstable: the body tumbles, and keeps momentum and energy.
     #[test]
     fn a_tumbling_brick_keeps_what_it_has() {
@@ -154,7 +158,7 @@ mod tests {
         let (start, energy) = (momentum, 0.5 * momentum.dot(&body.spin));
         let mut lowest = body.spin.y;
         for _ in 0..20_000 {
-            brick.kick(&mut body, &mut momentum, &NOTHING, 1e-3, 1e-3);
+            brick.kick(&mut body, &mut momentum, &Wrench::NONE, 1e-3, 1e-3);
             body.drift(1e-3);
             let own = body.orientation.inverse_transform_vector(&body.spin);
             lowest = lowest.min(own.y);

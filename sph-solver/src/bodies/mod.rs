@@ -223,19 +223,21 @@ impl<const D: usize> Bodies<D> {
             })
         };
         let set = |moving: &Moving<D>| {
-            let mut placed = moving.placed(&moving.now);
-            for x in &mut placed.position {
-                *x = wrapped(*x, &self.lower, &self.periods);
+            let elements = &moving.body.elements;
+            let mut kept = Vec::new();
+            let (mut position, mut normal) = (Vec::new(), Vec::new());
+            for i in 0..elements.len() as u32 {
+                let (x, n) = self.in_domain(moving.element(&moving.now, i as usize));
+                if near(&x) && !self.obstacles.cover(&x) {
+                    kept.push(i);
+                    position.push(x);
+                    normal.push(n);
+                }
             }
-            let kept = (0..placed.len() as u32).filter(|&i| {
-                let x = &placed.position[i as usize];
-                near(x) && !self.obstacles.cover(x)
-            });
-            let kept: Vec<u32> = kept.collect();
-            placed.keep(&kept);
-            let first = moving.body.elements.id.first().copied().unwrap_or(0);
             let frame = self.frame(moving.body.solid)?;
-            (!placed.is_empty()).then(|| WallSet::moving(&placed, first, frame, grid, encoder))
+            let first = *elements.id.first()?;
+            let placed = WallElements { position, normal, ..elements.some(&kept) };
+            (!kept.is_empty()).then(|| WallSet::moving(placed, first, frame, grid, encoder))
         };
         self.all.iter().filter_map(set).collect()
     }
@@ -247,11 +249,15 @@ impl<const D: usize> Bodies<D> {
             for wall in walls.iter_mut().filter(|wall| wall.solid == solid) {
                 let Some(frame) = self.frame(solid) else { continue };
                 wall.place(frame, encoder, |element| {
-                    let (x, normal) = moving.element(&moving.now, element);
-                    (wrapped(x, &self.lower, &self.periods), normal)
+                    self.in_domain(moving.element(&moving.now, element))
                 });
             }
         }
+    }
+
+    /// An element at its image in the domain.
+    fn in_domain(&self, (x, normal): ([f64; D], [f64; D])) -> ([f64; D], [f64; D]) {
+        (wrapped(x, &self.lower, &self.periods), normal)
     }
 
     /// Completes a step: kicks over the present place, half of `dt_before` behind and half of `dt` ahead

@@ -96,13 +96,13 @@ fn study_all(arguments: &StudyArguments) -> Result<(), StudyError> {
             over: arguments.over.clone(),
             seeds: arguments.seeds.clone(),
         })?;
-        let truth = plan.scene.reference.as_ref().map(|known| Truth::of(&plan.scene, known));
-        studies.push((plan, truth.transpose()?, folder(arguments, scene)));
+        let truth = Truth::of(&plan.scene, &plan.reference)?;
+        studies.push((plan, truth, folder(arguments, scene)));
     }
     let program = program(arguments)?;
     let mut reports = Vec::new();
     for (plan, truth, study) in &studies {
-        let (Some(truth), Some(reference)) = (truth, &plan.scene.reference) else { continue };
+        let reference = &plan.reference;
         let progress = Progress::new(arguments.quiet, plan.cases.len());
         let mut tell =
             |case: &Case, outcome: &Outcome, new: bool| progress.tell(case, outcome, new);

@@ -120,6 +120,14 @@ fn unit(table: &Table, name: &str) -> String {
 
 const MEAN_FORCES: [&str; 3] = ["mean_force_x", "mean_force_y", "mean_force_z"];
 const MEAN_MOMENTS: [&str; 3] = ["mean_moment_x", "mean_moment_y", "mean_moment_z"];
+/// What the tables of solids that move have besides: title, what the legend leaves out, columns.
+const MOTION: [(&str, &str, [&str; 3]); 5] = [
+    ("Place", "", ["x", "y", "z"]),
+    ("Velocity", "velocity_", ["velocity_x", "velocity_y", "velocity_z"]),
+    ("Acceleration", "acceleration_", ["acceleration_x", "acceleration_y", "acceleration_z"]),
+    ("Rotation", "rotation_", ["rotation_x", "rotation_y", "rotation_z"]),
+    ("Spin", "spin_", ["spin_x", "spin_y", "spin_z"]),
+];
 const FRICTION: [&str; 3] = ["friction_force_x", "friction_force_y", "friction_force_z"];
 
 fn loads(solid: &str, table: &Table) -> Vec<Group> {
@@ -138,6 +146,10 @@ fn loads(solid: &str, table: &Table) -> Vec<Group> {
     if friction.columns.iter().any(|(_, values)| values.iter().any(|v| *v != 0.0)) {
         groups.push(friction);
     }
+    let motion = |(title, prefix, names): (&str, &str, [&str; 3])| {
+        group(table, format!("{title} of {solid}"), prefix, &names)
+    };
+    groups.extend(MOTION.map(motion));
     groups
 }
 
@@ -209,6 +221,15 @@ mod tests {
         let units: Vec<_> = groups.iter().map(|g| (g.unit.as_str(), g.columns.len())).collect();
         assert_eq!(units, [("Pa", 1), ("m/s", 2)]);
         assert_eq!(groups[0].title, "Probe P: pressure");
+    }
+
+    #[test]
+    fn a_solid_that_moves_has_curves_of_its_motion() {
+        let titles = [("time", "s"), ("x", "m"), ("y", "m"), ("spin_z", "rad/s")];
+        let table = table(&titles, &[&[0.0, 1.0, 2.0, 3.0]]);
+        let groups = groups("solid-box", &table);
+        let titles: Vec<_> = groups.iter().map(|g| (g.title.as_str(), g.columns.len())).collect();
+        assert_eq!(titles, [("Place of box", 2), ("Spin of box", 1)]);
     }
 
     #[test]

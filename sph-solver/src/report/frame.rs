@@ -40,14 +40,14 @@ pub fn figure(
     caption: &str,
     fluid: &Snapshot,
     values: &[f64],
-    walls: Option<&Snapshot>,
+    walls: &[&Snapshot],
     spacing: f64,
 ) -> Result<String, png::EncodingError> {
     let Framing { view, extent, scale, range: (low, high), pixels } = *framing;
     let mut picture = Picture::new(view, &extent, scale, pixels);
     // A little more than what is seen, for what reaches into it.
     let seen = extent.grown(spacing);
-    if let Some(walls) = walls {
+    for walls in walls {
         let normals = walls.column("normal").filter(|normal| normal.components == 3);
         for (index, point) in walls.positions.iter().enumerate() {
             if seen.contains(point) {

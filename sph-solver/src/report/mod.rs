@@ -9,7 +9,7 @@ mod curves;
 mod error;
 mod facts;
 mod frame;
-mod html;
+pub(crate) mod html;
 mod page;
 mod picture;
 mod pictures;

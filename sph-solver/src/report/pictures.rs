@@ -4,9 +4,9 @@ use super::colours::{PRESSURE, SPEED};
 use super::frame::{Framing, colour_bar, figure};
 use super::html::escape;
 use super::results::Results;
-use super::scan::{Field, Scan, range, walls};
+use super::scan::{Field, Scan, moving, range, walls};
 use super::view::Extent;
-use sph_io::read_vtu;
+use sph_io::{Snapshot, read_vtu};
 
 /// Moments that are shown of each run.
 pub fn moments_for(runs: usize) -> usize {
@@ -57,14 +57,16 @@ pub fn section(
             }
             let view = scan.view(&run.record.gravity);
             let framing = Framing { view, extent, scale, range, pixels };
-            let walls = walls(run, problems);
+            let at_rest = walls(run, problems);
             html += "<div class=\"grid\">\n";
             for moment in &scan.moments {
+                let moving = moving(run, moment.time, problems);
+                let walls: Vec<&Snapshot> = at_rest.iter().chain(&moving).collect();
                 let drawn = read_vtu(run.folder.join(&moment.file)).map_err(|e| e.to_string());
                 let drawn = drawn.and_then(|fluid| {
                     let values = fluid.magnitudes(field.column()).unwrap_or_default();
                     let caption = format!("t = {} s", rounded(moment.time));
-                    figure(&framing, &caption, &fluid, &values, walls.as_ref(), scan.spacing)
+                    figure(&framing, &caption, &fluid, &values, &walls, scan.spacing)
                         .map_err(|error| error.to_string())
                 });
                 match drawn {

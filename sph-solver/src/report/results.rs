@@ -21,8 +21,10 @@ pub struct Results {
     pub tables: Vec<(String, Table)>,
     /// Snapshots of the fluid over time.
     pub snapshots: Vec<PvdEntry>,
-    /// The file of the walls.
-    pub walls: Option<String>,
+    /// Files of walls at rest.
+    pub walls: Vec<String>,
+    /// Walls that move, over time.
+    pub moving: Vec<PvdEntry>,
     /// What could not be read, and why.
     pub problems: Vec<String>,
 }
@@ -72,7 +74,7 @@ impl Results {
                 Err(error) => problems.push(format!("{error}; it is left out")),
             }
         }
-        let (mut snapshots, mut walls) = (Vec::new(), None);
+        let (mut snapshots, mut walls, mut moving) = (Vec::new(), Vec::new(), Vec::new());
         // The series is named after the scene.
         let index = indices
             .iter()
@@ -81,9 +83,18 @@ impl Results {
         if let Some(name) = index {
             match PvdIndex::open(folder.join(name)) {
                 Ok(index) => {
-                    let entries = index.entries().iter();
-                    walls = entries.clone().find(|one| one.part == 1).map(|one| one.file.clone());
-                    snapshots = entries.filter(|one| one.part == 0).cloned().collect();
+                    let entries = index.entries().iter().cloned();
+                    let parts: Vec<PvdEntry>;
+                    (snapshots, parts) = entries.partition(|one| one.part == 0);
+                    let rests = |one: &PvdEntry| {
+                        let same = parts.iter().filter(|other| other.file == one.file);
+                        same.count() == snapshots.len()
+                    };
+                    let at_rest;
+                    (at_rest, moving) = parts.iter().cloned().partition(rests);
+                    walls = at_rest.into_iter().map(|one: PvdEntry| one.file).collect();
+                    walls.sort();
+                    walls.dedup();
                     snapshots.sort_by(|a, b| a.time.total_cmp(&b.time));
                 }
                 Err(error) => problems.push(format!("{error}; there are no pictures")),
@@ -95,7 +106,7 @@ impl Results {
             .and_then(|path| path.file_name().map(|name| name.to_string_lossy().into_owned()))
             .unwrap_or_else(|| folder.display().to_string());
         let folder = folder.into();
-        Ok(Self { folder, label, record, summary, tables, snapshots, walls, problems })
+        Ok(Self { folder, label, record, summary, tables, snapshots, walls, moving, problems })
     }
 
     /// Name of the scene.

@@ -76,9 +76,11 @@ impl Scan {
                 Err(error) => problems.push(format!("{error}; the picture is left out")),
             }
         }
-        if let Some(walls) = walls(results, problems) {
-            walls.positions.iter().for_each(|point| scan.walls.add(point));
+        let mut parts = walls(results, problems);
+        for moment in &scan.moments {
+            parts.extend(moving(results, moment.time, problems));
         }
+        parts.iter().flat_map(|part| &part.positions).for_each(|point| scan.walls.add(point));
         scan.samples.iter_mut().for_each(|samples| samples.sort_by(f64::total_cmp));
         if results.dimension().is_none() {
             scan.flat = !scan.fluid.is_empty() && scan.fluid.min[2] == scan.fluid.max[2];
@@ -158,19 +160,35 @@ pub fn range(scans: &[Scan], field: Field) -> (f64, f64) {
     (if low < -0.1 * high { -round_above(-low) } else { 0.0 }, high)
 }
 
-/// The walls of a run.
-pub fn walls(results: &Results, problems: &mut Vec<String>) -> Option<Snapshot> {
-    let file = results.walls.as_ref()?;
-    match read_vtu(results.folder.join(file)) {
-        Ok(walls) => Some(walls),
-        Err(error) => {
-            let problem = format!("{error}; walls are not drawn");
-            if !problems.contains(&problem) {
-                problems.push(problem);
+/// The walls of a run that rest.
+pub fn walls(results: &Results, problems: &mut Vec<String>) -> Vec<Snapshot> {
+    read_walls(results, results.walls.iter(), problems)
+}
+
+/// The walls of a run that move, in the snapshot of a time (s).
+pub fn moving(results: &Results, time: f64, problems: &mut Vec<String>) -> Vec<Snapshot> {
+    let then = results.moving.iter().filter(|one| one.time == time);
+    read_walls(results, then.map(|one| &one.file), problems)
+}
+
+fn read_walls<'a>(
+    results: &Results,
+    files: impl Iterator<Item = &'a String>,
+    problems: &mut Vec<String>,
+) -> Vec<Snapshot> {
+    let mut walls = Vec::new();
+    for file in files {
+        match read_vtu(results.folder.join(file)) {
+            Ok(part) => walls.push(part),
+            Err(error) => {
+                let problem = format!("{error}; walls are not drawn");
+                if !problems.contains(&problem) {
+                    problems.push(problem);
+                }
             }
-            None
         }
     }
+    walls
 }
 
 /// `count` of the moments, first and last among them, as evenly in time as they allow.

@@ -1,6 +1,6 @@
 //! Columns of the tables of a run, before there is one.
 
-use super::files::{energy_columns, load_columns};
+use super::files::{energy_columns, solid_columns};
 use super::launch::probe;
 use crate::scene::Scene;
 
@@ -18,6 +18,9 @@ pub fn of_table<const D: usize>(scene: &Scene, table: &str) -> Vec<&'static str>
     if let Some(one) = named("probe-").and_then(of_name) {
         return names(probe::<D>(one, *scene.numerics.spacing).columns());
     }
-    let is_solid = |name: &str| scene.solid.iter().any(|solid| solid.name.as_str() == name);
-    if named("solid-").is_some_and(is_solid) { names(load_columns(D)) } else { Vec::new() }
+    let of_name = |name: &str| scene.solid.iter().find(|solid| solid.name.as_str() == name);
+    match named("solid-").and_then(of_name) {
+        Some(solid) => names(solid_columns(D, solid.moves())),
+        None => Vec::new(),
+    }
 }

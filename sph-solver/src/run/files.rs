@@ -73,13 +73,7 @@ impl Files {
             probes: probes.collect::<Result<_, _>>()?,
             solids: solids
                 .iter()
-                .map(|(name, moves)| {
-                    let mut columns = load_columns(D);
-                    if *moves {
-                        columns.extend(motion_columns(D));
-                    }
-                    table(&format!("solid-{name}"), &columns)
-                })
+                .map(|(name, moves)| table(&format!("solid-{name}"), &solid_columns(D, *moves)))
                 .collect::<Result<_, _>>()?,
             reference: match &plan.reference {
                 Some(reference) => Some(table("reference", &reference.columns())?),
@@ -234,6 +228,15 @@ fn wall_frame<'a, const D: usize>(
     frame.with("normal", single(&walls.normal))
 }
 
+/// Columns of the table of a solid that moves or rests, without the time.
+pub(super) fn solid_columns(dimension: usize, moves: bool) -> Vec<(&'static str, &'static str)> {
+    let mut columns = load_columns(dimension);
+    if moves {
+        columns.extend(motion_columns(dimension));
+    }
+    columns
+}
+
 /// What the table of a solid that moves says of its motion, besides the load on it.
 fn motion_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
     let vectors = [
@@ -293,7 +296,7 @@ fn load_axes(dimension: usize) -> (Range<usize>, Range<usize>) {
     if dimension == 2 { (0..2, 5..6) } else { (0..3, 3..6) }
 }
 
-pub(super) fn load_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
+fn load_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
     // In two dimensions a load is that on a metre of depth.
     let (force, moment) = if dimension == 2 { ("N/m", "N") } else { ("N", "N m") };
     let (forces, moments) = load_axes(dimension);

@@ -5,7 +5,7 @@
 //! order, so that neither the ranks nor the moments of bringing together matter.
 
 use crate::error::RunError;
-use crate::loads::{LoadScale, Loads, NUMBERS, WORDS, apart, together};
+use crate::loads::{LoadScale, Loads, NUMBERS, on_all_ranks};
 use sph_decomp::Communicator;
 
 /// Steps after which loads are brought together though no row is due.
@@ -141,17 +141,12 @@ impl LoadLog {
     /// Brings the pending steps of all ranks together. Collective.
     fn settle(&mut self, comm: &dyn Communicator) -> Result<(), RunError> {
         let pending = std::mem::take(&mut self.pending);
-        let mut words = Vec::with_capacity(pending.len() * self.solids.len() * WORDS);
-        for (_, loads) in &pending {
-            for solid in 0..self.solids.len() {
-                words.extend(apart(&loads.of(solid as u16)));
-            }
-        }
-        comm.sum_u64(&mut words)?;
-        let mut loads = words.chunks_exact(WORDS);
+        let solids = self.solids.len() as u16;
+        let own = pending.iter().flat_map(|(_, loads)| (0..solids).map(|solid| loads.of(solid)));
+        let mut all = on_all_ranks(comm, own)?.into_iter();
         for ([before, after], _) in pending {
-            for (solid, words) in self.solids.iter_mut().zip(&mut loads) {
-                solid.now = self.scale.in_newtons(&together(words));
+            for (solid, quanta) in self.solids.iter_mut().zip(&mut all) {
+                solid.now = self.scale.in_newtons(&quanta);
                 let force = (0..3).map(|k| (solid.now[k] + solid.now[6 + k]).powi(2));
                 let force = force.sum::<f64>().sqrt();
                 solid.largest = solid.largest.max(force);

@@ -28,6 +28,13 @@ with_shape_keys! {
     }
 }
 
+impl Solid {
+    /// Whether it does not rest.
+    pub fn moves(&self) -> bool {
+        self.motion.is_some() || self.body.is_some()
+    }
+}
+
 /// What a wall does to fluid that moves along it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

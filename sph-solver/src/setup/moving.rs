@@ -2,18 +2,18 @@
 
 use super::lattice_error;
 use crate::bodies::{Body, Course, Free, Guide, Path, Rigid, Row, Spring, in_space};
+use crate::csv_file;
 use crate::scene::{self, At, Degree, ErrorKind, Motion, Place, Scene, SceneError, TimedFormula};
 use crate::walls::WallElements;
 use nalgebra::{Matrix3, Unit, Vector3};
 use sph_geometry::{Aabb, Lattice, Solid, body_elements, shape_mass_properties};
-use sph_io::read_csv;
 
 /// Moments at which the speed of a prescribed motion is looked at.
 const SAMPLES: usize = 1000;
 
 /// Whether each solid of a scene moves.
 pub fn moves(scene: &Scene) -> Vec<bool> {
-    scene.solid.iter().map(|solid| solid.motion.is_some() || solid.body.is_some()).collect()
+    scene.solid.iter().map(|solid| solid.moves()).collect()
 }
 
 /// The solids that rest, and all others left out.
@@ -115,9 +115,8 @@ fn prescribed<const D: usize>(
     };
     let course = Course { about: in_space(&about), axis: axis(motion.axis.as_ref()), path };
     // The velocity at the start is that of a first short step.
-    let start = Rigid { ..course.at(0.0) };
     let first = course.step(0.0, *scene.end_time / SAMPLES as f64);
-    let start = Rigid { velocity: first.velocity, spin: first.spin, ..start };
+    let start = Rigid { velocity: first.velocity, spin: first.spin, ..course.at(0.0) };
     if !(start.to_array().iter().all(|number| number.is_finite())) {
         let kind = ErrorKind::Invalid {
             what: format!("the motion of solid `{}` is not defined at t = 0", solid.name),
@@ -230,31 +229,41 @@ fn rows(scene: &Scene, path: &At<std::path::PathBuf>) -> Result<Vec<Row>, SceneE
         };
         scene.error(path.place, kind)
     };
-    let table = read_csv(&file).map_err(|error| refuse(error.to_string()))?;
-    let time = table.column("time").ok_or_else(|| refuse("there is no column `time`".into()))?;
-    let known = ["x", "y", "z", "angle"];
-    if let Some(other) =
-        table.names.iter().find(|name| *name != "time" && !known.contains(&name.as_str()))
-    {
-        return Err(refuse(format!("there is a column `{other}`")));
-    }
-    let columns = known.map(|name| table.column(name));
-    let row = |k: usize| Row {
-        time: time[k],
-        place: std::array::from_fn(|c| columns[c].as_ref().map_or(0.0, |column| column[k])),
+    // The time, then each of the others that there is, by its place among these.
+    const KNOWN: [&str; 4] = ["x", "y", "z", "angle"];
+    let mut known = Vec::new();
+    let pick = |names: &[&str]| {
+        let place = |name: &str| names.iter().position(|other| *other == name);
+        let time = place("time").ok_or("there is no column `time`")?;
+        let strange = names.iter().find(|name| **name != "time" && !KNOWN.contains(name));
+        if let Some(other) = strange {
+            return Err(format!("there is a column `{other}`"));
+        }
+        let mut places = vec![time];
+        for (axis, name) in KNOWN.iter().enumerate() {
+            if let Some(place) = place(name) {
+                known.push(axis);
+                places.push(place);
+            }
+        }
+        Ok(places)
     };
-    let rows: Vec<Row> = (0..time.len()).map(row).collect();
-    let number = |k: usize| k + 2;
-    if rows.is_empty() {
-        return Err(refuse("there are no rows".into()));
+    let table = csv_file::rows(&file, pick).map_err(refuse)?;
+    let mut rows: Vec<Row> = Vec::new();
+    for (line, numbers) in &table {
+        let (time, rest) = (numbers[0], &numbers[1..]);
+        if rows.last().is_some_and(|before| time <= before.time) {
+            return Err(refuse(format!(
+                "{}: the time of row {line} is not later than before",
+                file.display()
+            )));
+        }
+        let mut place = [0.0; 4];
+        known.iter().zip(rest).for_each(|(axis, number)| place[*axis] = *number);
+        rows.push(Row { time, place });
     }
-    for (k, row) in rows.iter().enumerate() {
-        if !(row.time.is_finite() && row.place.iter().all(|x| x.is_finite())) {
-            return Err(refuse(format!("row {} has no number in some place", number(k))));
-        }
-        if k > 0 && row.time <= rows[k - 1].time {
-            return Err(refuse(format!("the time of row {} is not later than before", number(k))));
-        }
+    if rows.is_empty() {
+        return Err(refuse(format!("{}: there are no rows", file.display())));
     }
     Ok(rows)
 }

@@ -1,10 +1,10 @@
 //! The figures of a run: its error, and what it cost.
 
-use super::csv_file::{Series, between};
 use super::norms;
 use super::outcome::Outcome;
 use super::plan::{Case, Plan};
 use super::truth::Truth;
+use crate::csv_file::{Series, between};
 use crate::scene::{Norm, Reference};
 use serde_json::Value;
 use sph_io::read_table;

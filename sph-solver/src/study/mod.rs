@@ -9,7 +9,6 @@
 mod axis;
 mod child;
 mod cost;
-mod csv_file;
 mod curve;
 mod error;
 mod identity;

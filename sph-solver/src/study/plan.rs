@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::error::StudyError;
 use super::identity;
-use crate::scene::{ErrorKind, Place, Scene};
+use crate::scene::{ErrorKind, Place, Reference, Scene};
 use std::path::{Path, PathBuf};
 
 /// What a study is asked for.
@@ -41,6 +41,8 @@ pub struct Case {
 pub struct Plan {
     /// The scene with the overrides of all runs.
     pub scene: Scene,
+    /// What it is compared with.
+    pub reference: Reference,
     /// Scene file.
     pub path: PathBuf,
     /// What is varied, without the seeds.
@@ -64,14 +66,14 @@ impl Plan {
     /// A scene without reference, or that is wrong with one of the values; seeds that change nothing.
     pub fn new(request: &Request) -> Result<Self, StudyError> {
         let scene = Scene::read(&request.scene, &request.overrides)?;
-        if scene.reference.is_none() {
+        let Some(reference) = scene.reference.clone() else {
             let kind = ErrorKind::Invalid {
                 what: "the scene has no [reference] to measure errors by".into(),
                 help: "add a table [reference] with velocity, pressure, formula, file or finest"
                     .into(),
             };
             return Err(scene.error(Place::default(), kind).into());
-        }
+        };
         let axes = axes(&scene, &request.over)?;
         let seeds = if request.seeds.is_empty() {
             scene.study.seeds.iter().map(|seed| seed.value).collect()
@@ -103,7 +105,7 @@ impl Plan {
             }
         }
         tell_apart(&mut cases);
-        Ok(Self { scene, path: request.scene.clone(), axes, cases })
+        Ok(Self { scene, reference: reference.value, path: request.scene.clone(), axes, cases })
     }
 }
 

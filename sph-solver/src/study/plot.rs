@@ -2,6 +2,7 @@
 
 use super::curve::Curve;
 use super::report::Report;
+use crate::report::html::escape;
 use std::fmt::Write;
 
 const WIDTH: f64 = 720.0;
@@ -31,7 +32,7 @@ pub fn work_precision(report: &Report) -> String {
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
          <text x=\"{:.1}\" y=\"26\" text-anchor=\"middle\" font-size=\"15\">{}</text>\n",
         0.5 * WIDTH,
-        escaped(&format!("{}: {}", report.scene, report.title)),
+        escape(&format!("{}: {}", report.scene, report.title)),
     );
     let points = report.curves.iter().flat_map(|curve| &curve.points);
     let places: Vec<(f64, f64)> =
@@ -168,7 +169,7 @@ impl Axes {
                  stroke=\"{color}\" stroke-width=\"1.5\"><title>{}: spacing {}, error {error:.3e}, \
                  {cost:.2} core-s</title></path>",
                 mark(number),
-                escaped(&curve.label),
+                escape(&curve.label),
                 point.spacing
             )?;
         }
@@ -186,7 +187,7 @@ impl Axes {
             mark(number),
             y - 4.0,
             x + 12.0,
-            escaped(&format!("{label}{order}"))
+            escape(&format!("{label}{order}"))
         )
     }
 }
@@ -210,10 +211,6 @@ fn mark(number: usize) -> &'static str {
         2 => "M0 -6L5.5 4.5H-5.5Z",
         _ => "M0 -6L6 0L0 6L-6 0Z",
     }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What the runs of a study are compared with.
 
-use super::csv_file::{self, Series};
 use super::error::StudyError;
+use crate::csv_file::{self, Series};
 use crate::run::columns;
 use crate::scene::{Compare, ErrorKind, Reference, Scene, TimedFormula};
 

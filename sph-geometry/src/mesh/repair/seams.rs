@@ -1,9 +1,9 @@
 //! Merging vertices on the rims of holes: the seams that some programs leave between faces.
 
 use super::Repairs;
+use crate::mesh::weld::Near;
 use crate::mesh::{TriangleMesh, is_collapsed, sides};
 use crate::vector::distance;
-use std::collections::HashMap;
 
 /// Widths of seams that are tried, relative to the size of the mesh, the smallest first.
 const WIDTHS: [f64; 4] = [1e-8, 1e-7, 1e-6, 1e-5];
@@ -55,25 +55,13 @@ fn merges(mesh: &TriangleMesh, width: f64) -> Vec<(u32, u32)> {
     let mut vertices: Vec<u32> = rims(mesh).into_iter().flatten().collect();
     vertices.sort_unstable();
     vertices.dedup();
-    let cell = |x: &[f64; 3]| x.map(|x| (x / width).floor());
-    let key = |cell: [f64; 3]| cell.map(|x| (x + 0.0).to_bits());
-    let mut cells: HashMap<[u64; 3], Vec<u32>> = HashMap::new();
+    let mut near = Near::new(width);
     let mut merged = Vec::new();
     for vertex in vertices {
         let x = &mesh.vertices[vertex as usize];
-        let home = cell(x);
-        let earlier = (0..27)
-            .filter_map(|n| {
-                let shift = [n % 3, n / 3 % 3, n / 9].map(|k| f64::from(k) - 1.0);
-                cells.get(&key([0, 1, 2].map(|k| home[k] + shift[k])))
-            })
-            .flatten()
-            .copied()
-            .filter(|&other| distance(x, &mesh.vertices[other as usize]) < width)
-            .min();
-        match earlier {
+        match near.earliest(x, |other| mesh.vertices[other as usize]) {
             Some(earlier) => merged.push((vertex, earlier)),
-            None => cells.entry(key(home)).or_default().push(vertex),
+            None => near.add(x, vertex),
         }
     }
     merged

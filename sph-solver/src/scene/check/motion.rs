@@ -9,7 +9,7 @@ use crate::scene::shape::Shape;
 use crate::scene::solid::Solid;
 
 pub fn check(values: &Values<'_>, index: usize, solid: &At<Solid>) -> Result<(), SceneError> {
-    if solid.motion.is_none() && solid.body.is_none() {
+    if !solid.moves() {
         return Ok(());
     }
     if let (Some(_), Some(body)) = (&solid.motion, &solid.body) {

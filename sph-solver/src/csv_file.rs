@@ -1,51 +1,79 @@
-//! Reference tables: CSV files with remarks.
+//! Tables that a scene names: CSV files with remarks.
 
 use std::path::Path;
 
 /// A column over another one, in SI units.
 pub type Series = Vec<(f64, f64)>;
 
-/// Reads two columns of a CSV file, the first two when `columns` is `None`. Lines that begin with # are
-/// remarks, the first other line names the columns. Rows in the order of time.
+/// A row: the line where it stands, and its numbers.
+pub type Row = (usize, Vec<f64>);
+
+/// Reads the columns of a CSV file that `pick` chooses by their names. Lines that begin with # are
+/// remarks, the first other line names the columns; empty lines, spaces around cells and a byte-order mark
+/// do no harm.
+///
+/// # Errors
+///
+/// What is wrong, with the line; also what `pick` finds wrong.
+pub fn rows(
+    path: &Path,
+    pick: impl FnOnce(&[&str]) -> Result<Vec<usize>, String>,
+) -> Result<Vec<Row>, String> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    let text = text.trim_start_matches('\u{feff}');
+    let at = |line: usize| at(path, line);
+    let mut lines =
+        text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty() && !line.starts_with('#'));
+    let (head, line) = lines.next().ok_or_else(|| format!("{}: the table is empty", at(1)))?;
+    let names: Vec<&str> = head.split(',').map(str::trim).collect();
+    let places = pick(&names).map_err(|problem| format!("{}: {problem}", at(line)))?;
+    let row = |(row, line): (&str, usize)| {
+        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
+        let number = |place: &usize| {
+            let cell = cells.get(*place).copied().unwrap_or("");
+            let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
+            value.ok_or_else(|| format!("{}: \"{cell}\" is no number", at(line)))
+        };
+        Ok((line, places.iter().map(number).collect::<Result<_, String>>()?))
+    };
+    lines.map(row).collect()
+}
+
+fn at(path: &Path, line: usize) -> String {
+    format!("{}:{line}", path.display())
+}
+
+/// Reads two columns of a CSV file, the first two when `columns` is `None`. Rows in the order of time.
 ///
 /// # Errors
 ///
 /// What is wrong, with the line.
 pub fn read(path: &Path, columns: Option<[&str; 2]>, units: [f64; 2]) -> Result<Series, String> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-    let at = |line: usize| format!("{}:{line}", path.display());
-    let mut lines =
-        text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty() && !line.starts_with('#'));
-    let (head, line) = lines.next().ok_or_else(|| format!("{}: the table is empty", at(1)))?;
-    let names: Vec<&str> = head.split(',').map(str::trim).collect();
-    let find = |name: &str| {
-        names.iter().position(|other| *other == name).ok_or_else(|| {
-            format!("{}: no column is called {name}; there are {}", at(line), names.join(", "))
-        })
-    };
-    let places = match columns {
-        Some([time, value]) => [find(time)?, find(value)?],
-        None if names.len() >= 2 => [0, 1],
-        None => return Err(format!("{}: there is one column only", at(line))),
+    let pick = |names: &[&str]| {
+        let find = |name: &str| {
+            names.iter().position(|other| *other == name).ok_or_else(|| {
+                format!("no column is called {name}; there are {}", names.join(", "))
+            })
+        };
+        match columns {
+            Some([time, value]) => Ok(vec![find(time)?, find(value)?]),
+            None if names.len() >= 2 => Ok(vec![0, 1]),
+            None => Err("there is one column only".into()),
+        }
     };
     let mut series: Series = Vec::new();
-    for (row, line) in lines {
-        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
-        let mut numbers = [0.0; 2];
-        for (number, (place, unit)) in numbers.iter_mut().zip(places.iter().zip(units)) {
-            let cell = cells.get(*place).copied().unwrap_or("");
-            let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
-            *number =
-                unit * value.ok_or_else(|| format!("{}: \"{cell}\" is no number", at(line)))?;
+    let mut last = 1;
+    for (line, numbers) in rows(path, pick)? {
+        let (time, value) = (units[0] * numbers[0], units[1] * numbers[1]);
+        if series.last().is_some_and(|(before, _)| *before >= time) {
+            return Err(format!("{}: times must rise", at(path, line)));
         }
-        if series.last().is_some_and(|(time, _)| *time >= numbers[0]) {
-            return Err(format!("{}: times must rise", at(line)));
-        }
-        series.push((numbers[0], numbers[1]));
+        series.push((time, value));
+        last = line;
     }
     if series.len() < 2 {
-        return Err(format!("{}: two rows or more are needed", at(line)));
+        return Err(format!("{}: two rows or more are needed", at(path, last)));
     }
     Ok(series)
 }
