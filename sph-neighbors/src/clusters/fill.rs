@@ -14,10 +14,10 @@ use std::ops::Range;
 pub struct Chunk {
     entries: Vec<u32>,
     /// First entry of each list, and the end.
-    starts: Vec<u32>,
-    first_target: usize,
+    pub(super) starts: Vec<u32>,
+    pub(super) first_target: usize,
     /// Sources within reach of each target.
-    counts: Vec<u32>,
+    pub(super) counts: Vec<u32>,
     pub pairs: u64,
     pub tests: u64,
 }
@@ -26,10 +26,37 @@ pub struct Chunk {
 #[derive(Debug, Default)]
 pub struct Scratch {
     near: Near,
-    entries: Vec<u32>,
+    pub(super) entries: Vec<u32>,
 }
 
 impl Chunk {
+    /// Makes the lists of these targets empty.
+    pub(super) fn begin(&mut self, first_target: usize) {
+        (self.first_target, self.pairs, self.tests) = (first_target, 0, 0);
+        self.starts.clear();
+        self.counts.clear();
+    }
+
+    /// Notes how many sources the targets of a cluster reach, of which they may be one themselves.
+    pub(super) fn count_targets(&mut self, counts: &[u32], own: bool) {
+        for count in counts {
+            let count = count.saturating_sub(u32::from(own));
+            self.pairs += u64::from(count);
+            self.counts.push(count);
+        }
+    }
+
+    /// Takes over the entries of all lists.
+    pub(super) fn end(&mut self, entries: &[u32]) {
+        self.starts.push(entries.len() as u32);
+        self.entries.clear();
+        if self.entries.capacity() < entries.len() {
+            // A little more, so that a later build with a few more neighbours fits.
+            self.entries.reserve_exact(entries.len() + entries.len() / 32);
+        }
+        self.entries.extend_from_slice(entries);
+    }
+
     #[inline]
     pub fn sources(&self, cluster: usize) -> &[u32] {
         &self.entries[self.starts[cluster] as usize..self.starts[cluster + 1] as usize]
@@ -52,6 +79,19 @@ impl Chunk {
         size_of::<Self>()
             + (self.entries.capacity() + self.starts.capacity() + self.counts.capacity()) * 4
     }
+}
+
+/// Sorts the entries from `start` on and drops those that are there twice.
+pub(super) fn sort_and_dedup(entries: &mut Vec<u32>, start: usize) {
+    entries[start..].sort_unstable();
+    let mut kept = start;
+    for k in start..entries.len() {
+        if kept == start || entries[kept - 1] != entries[k] {
+            entries[kept] = entries[k];
+            kept += 1;
+        }
+    }
+    entries.truncate(kept);
 }
 
 /// Finds the sources of the clusters `some`, with the widest vectors of this CPU.
@@ -112,9 +152,7 @@ impl<const D: usize> Task<'_, D> {
         let Scratch { near, entries } = scratch;
         let search = Search::new(self.cells, self.query);
         let first_target = self.clusters.targets_of(some.start).start;
-        (chunk.first_target, chunk.pairs, chunk.tests) = (first_target, 0, 0);
-        chunk.starts.clear();
-        chunk.counts.clear();
+        chunk.begin(first_target);
         entries.clear();
         for cluster in some {
             chunk.starts.push(entries.len() as u32);
@@ -135,31 +173,13 @@ impl<const D: usize> Task<'_, D> {
             }
             if passes > 1 {
                 // Found from several sides, each in order.
-                entries[start..].sort_unstable();
-                let mut kept = start;
-                for k in start..entries.len() {
-                    if kept == start || entries[kept - 1] != entries[k] {
-                        entries[kept] = entries[k];
-                        kept += 1;
-                    }
-                }
-                entries.truncate(kept);
+                sort_and_dedup(entries, start);
             }
             let order = self.cells.order();
             entries[start..].iter_mut().for_each(|place| *place = order[*place as usize]);
-            for count in &counts[..targets.len()] {
-                let count = count.saturating_sub(u32::from(self.own));
-                chunk.pairs += u64::from(count);
-                chunk.counts.push(count);
-            }
+            chunk.count_targets(&counts[..targets.len()], self.own);
         }
-        chunk.starts.push(entries.len() as u32);
-        chunk.entries.clear();
-        if chunk.entries.capacity() < entries.len() {
-            // A little more, so that a later build with a few more neighbours fits.
-            chunk.entries.reserve_exact(entries.len() + entries.len() / 32);
-        }
-        chunk.entries.extend_from_slice(entries);
+        chunk.end(entries);
     }
 
     /// The group of the targets from `next` on that are close together, and moves on behind them;

@@ -6,9 +6,10 @@ mod fill;
 mod layout;
 mod near;
 mod order;
+mod radii;
 
-use crate::CellList;
-use crate::list::{Pool, Query, are_near};
+use crate::list::{PairReach, Pool, Query, are_near};
+use crate::{CellList, LevelList};
 use fill::{Chunk, Scratch};
 pub use layout::Clusters;
 pub use order::ColumnOrder;
@@ -92,6 +93,47 @@ impl ClusterList {
             pool.with(|scratch| {
                 fill::fill(chunk, scratch, &query, cells, clusters, some, targets, own);
             });
+        });
+    }
+
+    /// Finds the sources of `levels` within the reach of each pair, which follows from the radii of both,
+    /// in the memory of this list. The sources of a cluster are in the order of the levels.
+    ///
+    /// * `targets`, `radii`: as many as `clusters` has. Targets of a cluster should have about the same
+    ///   radius.
+    /// * `own`: as for [`rebuild`](Self::rebuild).
+    ///
+    /// For a Verlet skin, add it to all radii. Sources may count that are too far by a few times the
+    /// resolution of the coarsest grid.
+    ///
+    /// # Panics
+    ///
+    /// When there is another number of targets or radii than `clusters` has, or
+    /// [`Grid::check_radius`](crate::Grid::check_radius) refuses a radius.
+    #[expect(clippy::too_many_arguments, reason = "those of `rebuild` and two for the radii")]
+    pub fn rebuild_with_radii<const D: usize>(
+        &mut self,
+        clusters: &Clusters,
+        levels: &LevelList<D>,
+        targets: &[[f64; D]],
+        radii: &[f64],
+        own: bool,
+        rule: PairReach,
+    ) {
+        assert_eq!(targets.len(), clusters.targets(), "clusters are of all targets");
+        assert_eq!(targets.len(), radii.len(), "every target needs a radius");
+        if let Some(error) = radii.iter().find_map(|&r| levels.grid().check_radius(r).err()) {
+            panic!("{error}");
+        }
+        self.periods = levels.grid().periods().to_vec();
+        self.clusters.clone_from(clusters);
+        self.chunks.resize_with(clusters.len().div_ceil(CHUNK), Chunk::default);
+        let pool = &self.pool;
+        let task = radii::Task { levels, clusters, targets, radii, own, rule };
+        self.chunks.par_iter_mut().enumerate().for_each(|(number, chunk)| {
+            let first = number * CHUNK;
+            let some = first..clusters.len().min(first + CHUNK);
+            pool.with(|scratch| task.fill(chunk, scratch, some));
         });
     }
 

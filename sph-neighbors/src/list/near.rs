@@ -189,6 +189,10 @@ impl<const D: usize> Plan<D> for Trees<'_, D> {
                         let reach = f64x4::fast_max;
                         near.tested.hits(window, &target, &shift, self.radii[t], reach)
                     }
+                    PairReach::Target => {
+                        let reach = |mine, _| mine;
+                        near.tested.hits(window, &target, &shift, self.radii[t], reach)
+                    }
                 };
                 let sources = &near.sources[first * LANES..];
                 let start = found.len();

@@ -15,14 +15,18 @@ pub enum PairReach {
     Mean,
     /// The larger radius.
     Max,
+    /// The radius of the target alone: for sources that have none of their own, such as the elements
+    /// of a wall. Pairs are then not symmetric.
+    Target,
 }
 
 impl PairReach {
-    /// Reach of a pair.
+    /// Reach of a pair of a target of radius `a` and a source of radius `b`.
     pub fn of(self, a: f64, b: f64) -> f64 {
         match self {
             Self::Mean => 0.5 * (a + b),
             Self::Max => a.max(b),
+            Self::Target => a,
         }
     }
 }
@@ -175,6 +179,7 @@ impl<const D: usize> Plan<D> for Variable<'_, D> {
         match self.rule {
             PairReach::Mean => search.cull(&group.group, 0, mean(group.radius)),
             PairReach::Max => search.cull(&group.group, 0, max(group.radius)),
+            PairReach::Target => search.cull(&group.group, 0, mine(group.radius)),
         }
     }
 
@@ -193,10 +198,11 @@ impl<const D: usize> Plan<D> for Variable<'_, D> {
     ) {
         let grid = self.levels.grid();
         let (target, group) = (grid.fixed(target), &group.group);
-        let mine = radius_in_units(grid, self.radii[t]);
+        let radius = radius_in_units(grid, self.radii[t]);
         match self.rule {
-            PairReach::Mean => search.test(group, &target, 0, mean(mine), own, found),
-            PairReach::Max => search.test(group, &target, 0, max(mine), own, found),
+            PairReach::Mean => search.test(group, &target, 0, mean(radius), own, found),
+            PairReach::Max => search.test(group, &target, 0, max(radius), own, found),
+            PairReach::Target => search.test(group, &target, 0, mine(radius), own, found),
         }
     }
 }
@@ -217,4 +223,10 @@ fn max(mine: f32) -> impl Fn(&[[f32; LANES]], usize) -> f32x8 {
         let reach = mine.fast_max(f32x8::from(radii[block]));
         reach * reach
     }
+}
+
+/// The square of a radius, whatever those of a block of candidates.
+fn mine(mine: f32) -> impl Fn(&[[f32; LANES]], usize) -> f32x8 {
+    let mine = f32x8::splat(mine);
+    move |_, _| mine * mine
 }
