@@ -54,6 +54,7 @@ impl DamBreak {
         Model {
             spacing: dp,
             support_radius: radius,
+            grading: None,
             skin: self.skin * radius,
             gravity: [0.0, 0.0, -GRAVITY],
             equation_of_state: EquationOfState::Tait { density0: DENSITY, sound_speed, gamma: 7.0 },

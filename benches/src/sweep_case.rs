@@ -156,7 +156,7 @@ impl<S: Real> SweepCase<S> {
         team: Option<&Team>,
     ) {
         let metric = PhantomData::<Open>;
-        let pairs = Neighbors { records, list: &self.list, terms, metric };
+        let pairs = Neighbors { records, list: &self.list, terms, halves: (&[], &[]), metric };
         let task = |(k, (rates, density)): (usize, (&mut [Q::Rate<3>], &[f64]))| {
             let first = k * GRAIN;
             sweep::<3, Q, WendlandC2, S, _>(first, records, density, &self.scale, &pairs, rates);

@@ -6,7 +6,7 @@
 //! part of each solid is at hand as the load on it.
 
 use crate::records::Record;
-use crate::space::{Open, PairScale, Periodic};
+use crate::space::{Graded, Open, PairScale, Periodic};
 use crate::sweep::{Beside, Neighbors, WallNeighbors, sweep};
 use crate::terms::{PairTerm, Quantity, WallTerm};
 use sph_kernels::{Kernel, Real};
@@ -25,6 +25,9 @@ pub struct GroupView<'a, const D: usize, S> {
     pub list: &'a ClusterList,
     /// Scale of the pairs.
     pub scale: &'a PairScale<D>,
+    /// Halves of the support radii of the targets over the largest, and of all records of the fluid,
+    /// indexed as they are; none where all are the same.
+    pub halves: Option<&'a [S]>,
     /// What wall terms are told of the targets; sums over fluid have no use for it.
     pub beside: Option<Beside<'a, D>>,
 }
@@ -91,15 +94,19 @@ where
         density: &[f64],
         rates: &mut [Q::Rate<D>],
     ) -> bool {
-        let GroupView { targets, sources: records, list, scale, .. } = view;
-        let terms = self.0;
-        if scale.is_periodic() {
+        let GroupView { targets, sources: records, list, scale, halves, .. } = view;
+        let (terms, none) = (self.0, (&[][..], &[][..]));
+        if let Some(all) = halves {
+            let (metric, halves) = (PhantomData::<Graded>, (&all[first..], all));
+            let pairs = Neighbors { records, list, terms, halves, metric };
+            sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
+        } else if scale.is_periodic() {
             let metric = PhantomData::<Periodic>;
-            let pairs = Neighbors { records, list, terms, metric };
+            let pairs = Neighbors { records, list, terms, halves: none, metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         } else {
             let metric = PhantomData::<Open>;
-            let pairs = Neighbors { records, list, terms, metric };
+            let pairs = Neighbors { records, list, terms, halves: none, metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         }
     }
@@ -119,16 +126,20 @@ where
         density: &[f64],
         rates: &mut [Q::Rate<D>],
     ) -> bool {
-        let GroupView { targets, sources: records, list, scale, beside } = view;
+        let GroupView { targets, sources: records, list, scale, halves, beside } = view;
         let Some(beside) = beside else { return false };
         let term = self.0;
-        if scale.is_periodic() {
+        if let Some(all) = halves {
+            let (metric, halves) = (PhantomData::<Graded>, &all[first..]);
+            let pairs = WallNeighbors { records, list, term, beside, halves, metric };
+            sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
+        } else if scale.is_periodic() {
             let metric = PhantomData::<Periodic>;
-            let pairs = WallNeighbors { records, list, term, beside, metric };
+            let pairs = WallNeighbors { records, list, term, beside, halves: &[], metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         } else {
             let metric = PhantomData::<Open>;
-            let pairs = WallNeighbors { records, list, term, beside, metric };
+            let pairs = WallNeighbors { records, list, term, beside, halves: &[], metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         }
     }

@@ -1,16 +1,19 @@
 //! The numbers of a run that every rank and every pass shares.
 
 use crate::eos::EquationOfState;
+use crate::grading::Grading;
 use crate::space::PairScale;
 use crate::timestep::StepLimits;
 
 /// Constants of a run in SI units; derived from the scene once and never changed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model<const D: usize> {
-    /// Initial particle distance, m.
+    /// Initial particle distance, the largest where it varies, m.
     pub spacing: f64,
-    /// Support radius R, m.
+    /// Support radius R, the largest where it varies, m.
     pub support_radius: f64,
+    /// How radii follow from masses; none where all are the same.
+    pub grading: Option<Grading>,
     /// Width of the Verlet skin: lists hold pairs closer than R + skin, m.
     pub skin: f64,
     /// Gravity, m/s².
@@ -73,7 +76,25 @@ impl<const D: usize> Model<D> {
         DIVERGED_MACH * self.limits.sound_speed
     }
 
-    /// Distance up to which lists and overlap zones reach, m.
+    /// Support radius of a particle of this mass (kg), m.
+    #[inline]
+    pub fn radius_of(&self, mass: f64) -> f64 {
+        match &self.grading {
+            Some(grading) => self.support_radius * grading.ratio::<D>(mass),
+            None => self.support_radius,
+        }
+    }
+
+    /// Initial distance of particles of this mass (kg), m.
+    #[inline]
+    pub fn spacing_of(&self, mass: f64) -> f64 {
+        match &self.grading {
+            Some(grading) => self.spacing * grading.ratio::<D>(mass),
+            None => self.spacing,
+        }
+    }
+
+    /// Largest distance up to which lists and overlap zones reach, m.
     pub fn reach(&self) -> f64 {
         self.support_radius + self.skin
     }

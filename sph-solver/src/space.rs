@@ -7,7 +7,7 @@ use sph_kernels::{Lanes, Real};
 pub struct PairScale<const D: usize> {
     /// Metres per unit of coordinate differences.
     pub unit: f64,
-    /// Support radius R, m.
+    /// Support radius R, the largest where radii vary, m.
     pub support_radius: f64,
     /// Lengths after which the axes repeat, m; none for an open axis.
     pub periods: [Option<f64>; D],
@@ -42,6 +42,9 @@ pub fn unit(support_radius: f64) -> f64 {
 /// How coordinate words are subtracted. A type, so that open space costs nothing for the sake of
 /// periodic sides.
 pub trait Metric: Copy + Send + Sync + 'static {
+    /// Whether pairs have support radii of their own.
+    const GRADED: bool = false;
+
     /// `a − b` along an axis, in units.
     fn difference<const D: usize, L: Lanes>(a: L, b: L, scale: &PairScale<D>, axis: usize) -> L;
 }
@@ -53,6 +56,19 @@ pub struct Open;
 /// Some axes repeat: differences along them are to the nearest image.
 #[derive(Debug, Clone, Copy)]
 pub struct Periodic;
+
+/// Axes may repeat, and support radii vary from particle to particle.
+#[derive(Debug, Clone, Copy)]
+pub struct Graded;
+
+impl Metric for Graded {
+    const GRADED: bool = true;
+
+    #[inline(always)]
+    fn difference<const D: usize, L: Lanes>(a: L, b: L, scale: &PairScale<D>, axis: usize) -> L {
+        Periodic::difference(a, b, scale, axis)
+    }
+}
 
 impl Metric for Open {
     #[inline(always)]

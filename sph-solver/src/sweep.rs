@@ -11,8 +11,8 @@ use crate::bodies::Frame;
 use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
 use crate::space::{Metric, PairScale};
 use crate::terms::{
-    BesideWall, Pair, PairTerm, Quantity, Source, Target, WallPair, WallTerm, difference, dot,
-    lanes,
+    BesideWall, Pair, PairTerm, Quantity, Source, Stretch, Target, WallPair, WallTerm, difference,
+    dot, lanes,
 };
 use sph_kernels::{Kernel, Lanes, Real, Vectorized};
 use sph_neighbors::{CLUSTER, ClusterList};
@@ -49,6 +49,9 @@ pub struct Neighbors<'a, S, T, M> {
     pub list: &'a ClusterList,
     /// Terms of this group.
     pub terms: T,
+    /// Halves of the support radii over the largest, of the targets of the sweep and of the records;
+    /// empty where all are the same.
+    pub halves: (&'a [S], &'a [S]),
     /// How coordinates are subtracted.
     pub metric: PhantomData<M>,
 }
@@ -78,6 +81,8 @@ pub struct WallNeighbors<'a, const D: usize, S, T, M> {
     pub term: T,
     /// The targets.
     pub beside: Beside<'a, D>,
+    /// Halves of the support radii of the targets over the largest; empty where all are the same.
+    pub halves: &'a [S],
     /// How coordinates are subtracted.
     pub metric: PhantomData<M>,
 }
@@ -97,7 +102,7 @@ where
     fn add<K: Kernel, L: Lanes<Scalar = S>>(
         &self,
         cluster: usize,
-        _: Range<usize>,
+        own: Range<usize>,
         position: &[L; D],
         target: &Target<D, L>,
         scale: &PairScale<D>,
@@ -109,19 +114,27 @@ where
         let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
         let to_q: L = lanes(scale.unit / scale.support_radius);
         // Copies, so that the constants of the terms are spread over the lanes once and not per pair.
-        let Self { records, list, terms, .. } = *self;
+        let Self { records, list, terms, halves: (of_targets, halves), .. } = *self;
+        let half = if M::GRADED { of_lanes(of_targets, &own) } else { L::zero() };
         for &j in list.sources(cluster) {
             let record = &records[j as usize];
             let offset: [L; D] =
                 from_fn(|k| M::difference(position[k], L::splat(record[k]), scale, k));
             let distance2 = dot(&offset, &offset);
             let distance = distance2.sqrt();
-            let weight = K::slope_shape(distance * to_q) * L::splat(record[WEIGHT]);
+            let (mut q, mut weight, mut stretch) =
+                (distance * to_q, L::splat(record[WEIGHT]), None);
+            if M::GRADED {
+                let own = Stretch::of(half + L::splat(halves[j as usize]));
+                (q, weight) = (q * own.inverse, weight * own.of_gradients::<D>());
+                stretch = Some(own);
+            }
+            let weight = K::slope_shape(q) * weight;
             let source = Source {
                 quantity: L::splat(record[QUANTITY]),
                 velocity: from_fn(|k| L::splat(record[velocity_word(k)])),
             };
-            let pair = Pair { offset, distance2, distance, weight, unit, per_unit };
+            let pair = Pair { offset, distance2, distance, weight, unit, per_unit, stretch };
             if T::CENTRAL {
                 Q::add(sum, terms.coefficient(target, &source, &pair), &pair);
             }
@@ -156,16 +169,22 @@ where
     ) {
         let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
         let to_q: L = lanes(scale.unit / scale.support_radius);
-        let Self { records, list, term, beside, .. } = *self;
+        let Self { records, list, term, beside, halves, .. } = *self;
+        let (mut factor, mut stretch, mut to_q) = (L::zero(), None, to_q);
+        if M::GRADED {
+            let half: L = of_lanes(halves, &own);
+            let own = Stretch::of(half + half);
+            (factor, to_q, stretch) = (own.of_gradients::<D>(), to_q * own.inverse, Some(own));
+        }
         let Beside { lowest_pressure, pressure_gradient, position: places, frame } = beside;
         let last = own.end - 1;
-        let of_lanes = |f: &dyn Fn(usize) -> f64| -> L {
+        let of_own = |f: &dyn Fn(usize) -> f64| -> L {
             let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f((own.start + l).min(last))));
             L::load(&all)
         };
         let mut beside = BesideWall {
-            pressure_gradient: from_fn(|k| of_lanes(&|i| pressure_gradient[i][k])),
-            lowest_pressure: of_lanes(&|i| lowest_pressure[i].max(LOWEST)),
+            pressure_gradient: from_fn(|k| of_own(&|i| pressure_gradient[i][k])),
+            lowest_pressure: of_own(&|i| lowest_pressure[i].max(LOWEST)),
             spin: [L::zero(); 3],
         };
         // Terms see a wall at rest.
@@ -175,7 +194,7 @@ where
             let walls: [[f64; D]; CLUSTER] =
                 from_fn(|l| frame.velocity_at(&places[(own.start + l).min(last)]));
             target.velocity =
-                from_fn(|k| target.velocity[k] - of_lanes(&|i| walls[i - own.start][k]));
+                from_fn(|k| target.velocity[k] - of_own(&|i| walls[i - own.start][k]));
         }
         let target = &target;
         let mut total = T::zero();
@@ -186,11 +205,39 @@ where
             let normal: [L; D] = from_fn(|k| L::splat(record[velocity_word(k)]));
             let distance2 = dot(&offset, &offset);
             let weight = K::slope_shape(distance2.sqrt() * to_q) * L::splat(record[WEIGHT]);
+            let weight = if M::GRADED { weight * factor } else { weight };
             let depth = L::splat(record[QUANTITY]);
-            let pair = WallPair { offset, distance2, normal, depth, weight, unit, per_unit };
+            let pair =
+                WallPair { offset, distance2, normal, depth, weight, unit, per_unit, stretch };
             term.add(target, &beside, &pair, &mut total);
         }
         *sum = term.finish(target, &total);
+    }
+}
+
+/// The values of the targets `own`, one a lane; lanes without a target repeat the last one.
+#[inline(always)]
+fn of_lanes<L: Lanes>(values: &[L::Scalar], own: &Range<usize>) -> L {
+    let all: [L::Scalar; CLUSTER] = from_fn(|l| values[(own.start + l).min(own.end - 1)]);
+    L::load(&all)
+}
+
+impl<L: Lanes> Stretch<L> {
+    /// Of a pair whose radius is this much of the largest.
+    #[inline(always)]
+    fn of(ratio: L) -> Self {
+        Self { ratio, inverse: lanes::<L>(1.0).div(ratio) }
+    }
+
+    /// What ∇W r^-1 of a pair is times that of the largest radius: (R/R_ij)^(D+2).
+    #[inline(always)]
+    fn of_gradients<const D: usize>(&self) -> L {
+        let square = self.inverse * self.inverse;
+        match D {
+            1 => square * self.inverse,
+            2 => square * square,
+            _ => square * square * self.inverse,
+        }
     }
 }
 

@@ -8,11 +8,13 @@
 //! nothing to do with it, and the sum over a set is the load on its solid.
 
 use crate::bodies::Frame;
+use crate::error::RunError;
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, record};
+use crate::search::{Search, Seekers, Sorted};
 use sph_decomp::Columns;
 use sph_geometry::{Domain, Lattice, LatticeError, Solid, wall_elements};
 use sph_kernels::Real;
-use sph_neighbors::{CellList, ClusterList, Grid};
+use sph_neighbors::ClusterList;
 
 /// Structure of arrays over the elements of all walls.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -146,7 +148,7 @@ pub struct WallSet<const D: usize, S> {
     pub records: Vec<Record<S>>,
     /// Elements near every owned fluid particle.
     pub near: ClusterList,
-    cells: CellList<D>,
+    sorted: Sorted<D>,
     motion: Option<Motion<D>>,
 }
 
@@ -160,41 +162,51 @@ struct Motion<const D: usize> {
 
 impl<const D: usize, S: Real> WallSet<D, S> {
     /// Sets of elements, one per solid that has any, by number.
+    ///
+    /// # Errors
+    ///
+    /// As [`Sorted::new`].
     pub fn of_all(
         elements: &WallElements<D>,
-        grid: &Grid<D>,
+        search: &Search<'_, D>,
         encoder: &Encoder<D, S>,
-    ) -> Vec<Self> {
+    ) -> Result<Vec<Self>, RunError> {
         let mut order: Vec<u32> = (0..elements.len() as u32).collect();
         order.sort_by_key(|&i| elements.solid[i as usize]);
         let same = |a: &u32, b: &u32| elements.solid[*a as usize] == elements.solid[*b as usize];
-        let of_one = |some: &[u32]| Self::of_one(elements.some(some), grid, encoder).0;
+        let of_one = |some: &[u32]| Ok(Self::of_one(elements.some(some), search, encoder)?.0);
         order.chunk_by(same).map(of_one).collect()
     }
 
     /// The set of the elements of one solid that moves, of which `first` is the lowest id.
+    ///
+    /// # Errors
+    ///
+    /// As [`Sorted::new`].
     pub fn moving(
         elements: WallElements<D>,
         first: u64,
         frame: Frame<D>,
-        grid: &Grid<D>,
+        search: &Search<'_, D>,
         encoder: &Encoder<D, S>,
-    ) -> Self {
-        let (set, sorted) = Self::of_one(elements, grid, encoder);
+    ) -> Result<Self, RunError> {
+        let (set, sorted) = Self::of_one(elements, search, encoder)?;
         let elements = sorted.id.iter().map(|id| (id - first) as u32).collect();
-        Self { motion: Some(Motion { frame, elements }), ..set }
+        Ok(Self { motion: Some(Motion { frame, elements }), ..set })
     }
 
     /// The set of elements of one solid, and the elements in the order of its records.
     fn of_one(
         mut own: WallElements<D>,
-        grid: &Grid<D>,
+        search: &Search<'_, D>,
         encoder: &Encoder<D, S>,
-    ) -> (Self, WallElements<D>) {
-        let mut cells = CellList::build(grid, &own.position, &own.id);
+    ) -> Result<(Self, WallElements<D>), RunError> {
+        let reaches = search.reaches_of_volumes(&own.volume);
+        let mut sorted = Sorted::new(search, &own.position, reaches.as_deref(), &own.id)?;
         // Neighbours in space shall be neighbours in memory.
-        own.keep(cells.order());
-        cells.rebuild(grid, &own.position, &own.id);
+        own.keep(&sorted.order());
+        let reaches = search.reaches_of_volumes(&own.volume);
+        sorted.renew(search, &own.position, reaches.as_deref(), &own.id)?;
         let write = |i: usize| {
             let weight = encoder.weight(own.volume[i]);
             let motion = encoder.motion(&own.position[i], &own.normal[i]);
@@ -204,10 +216,10 @@ impl<const D: usize, S: Real> WallSet<D, S> {
             solid: own.solid.first().copied().unwrap_or(0),
             records: (0..own.len()).map(write).collect(),
             near: ClusterList::default(),
-            cells,
+            sorted,
             motion: None,
         };
-        (set, own)
+        Ok((set, own))
     }
 
     /// The frame in which the set rests; none for one that rests anyway.
@@ -231,14 +243,9 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         }
     }
 
-    /// Where the elements are.
-    pub fn cells(&self) -> &CellList<D> {
-        &self.cells
-    }
-
     /// Finds the elements near the targets of each cluster.
-    pub fn find(&mut self, clusters: &sph_neighbors::Clusters, targets: &[[f64; D]], reach: f64) {
-        self.near.rebuild(clusters, &self.cells, targets, false, reach);
+    pub fn find(&mut self, search: &Search<'_, D>, seekers: &Seekers<'_, D>) {
+        self.sorted.find_for(&mut self.near, search, seekers);
     }
 
     /// Bytes in use.
@@ -246,7 +253,7 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         let moving = self.motion.as_ref().map_or(0, |motion| 4 * motion.elements.len());
         self.records.len() * size_of::<Record<S>>()
             + self.near.bytes()
-            + self.cells.bytes()
+            + self.sorted.bytes()
             + moving
     }
 }

@@ -73,6 +73,7 @@ fn error<S: Real + bytemuck::Pod>(seed: u64) -> f64 {
     let model = Model {
         spacing: DP,
         support_radius,
+        grading: None,
         skin: 0.15 * support_radius,
         gravity: [0.0; 2],
         equation_of_state,

@@ -22,15 +22,16 @@ pub use free::{Free, Wrench};
 pub use rigid::Rigid;
 pub use spring::Spring;
 
+use crate::error::RunError;
 use crate::lio::Extremes;
 use crate::records::Encoder;
+use crate::search::Search;
 use crate::space::wrapped;
 use crate::walls::{WallElements, WallSet};
 use contact::{Gap, Obstacles};
 use nalgebra::Vector3;
 use sph_geometry::{Aabb, Solid};
 use sph_kernels::Real;
-use sph_neighbors::Grid;
 use std::sync::Arc;
 
 /// What moves a body.
@@ -211,12 +212,11 @@ impl<const D: usize> Bodies<D> {
     /// walls. Elements inside a solid at rest are left out: there are those of that solid.
     pub fn sets<S: Real>(
         &self,
-        grid: &Grid<D>,
+        search: &Search<'_, D>,
         encoder: &Encoder<D, S>,
         fluid: &Aabb<D>,
-        reach: f64,
-    ) -> Vec<WallSet<D, S>> {
-        let around = fluid.inflated(reach);
+    ) -> Result<Vec<WallSet<D, S>>, RunError> {
+        let around = fluid.inflated(search.reach());
         let near = |x: &[f64; D]| {
             (0..D).all(|k| {
                 self.periods[k].is_some() || (around.min[k] <= x[k] && x[k] <= around.max[k])
@@ -237,7 +237,7 @@ impl<const D: usize> Bodies<D> {
             let frame = self.frame(moving.body.solid)?;
             let first = *elements.id.first()?;
             let placed = WallElements { position, normal, ..elements.some(&kept) };
-            (!kept.is_empty()).then(|| WallSet::moving(placed, first, frame, grid, encoder))
+            (!kept.is_empty()).then(|| WallSet::moving(placed, first, frame, search, encoder))
         };
         self.all.iter().filter_map(set).collect()
     }

@@ -70,7 +70,7 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
                 fault = 1.0;
             }
             if let Some(crowding) = block.shift.get_mut(k) {
-                let radius = self.model.support_radius;
+                let radius = self.model.radius_of(block.mass[k]);
                 // Where there is no free surface, a gap is one that is to be closed.
                 let filled = if self.model.closed { 1.0 } else { rate.fluid + rate.wall };
                 *crowding = shift(crowding, filled, radius, self.speed);

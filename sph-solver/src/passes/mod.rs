@@ -38,6 +38,8 @@ pub struct Surroundings<'a, const D: usize, S> {
     pub walls: &'a [WallSet<D, S>],
     /// Scale of the pairs.
     pub scale: &'a PairScale<D>,
+    /// Halves of the support radii of the fluid over the largest; none where all are the same.
+    pub halves: Option<&'a [S]>,
 }
 
 impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
@@ -49,7 +51,8 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
         block: &mut Block<'_, D, S, R>,
     ) {
         let list = self.near_fluid;
-        let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
+        let Self { scale, halves, .. } = *self;
+        let view = GroupView { targets: old, sources: old, list, scale, halves, beside: None };
         if !sum.sum(view, block.first, block.density, block.rates) {
             block.rates.fill(R::default());
         }
@@ -73,6 +76,7 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
                 sources: &wall.records,
                 list: &wall.near,
                 scale: self.scale,
+                halves: self.halves,
                 beside: Some(Beside { frame: wall.frame(), ..targets.beside }),
             };
             if sum.sum(view, targets.first, targets.density, &mut own) {
@@ -91,7 +95,8 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
     ) {
         let mut sums = vec![VectorSum::default(); block.len()];
         let list = self.near_fluid;
-        let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
+        let Self { scale, halves, .. } = *self;
+        let view = GroupView { targets: old, sources: old, list, scale, halves, beside: None };
         fluid.sum(view, block.first, block.density, &mut sums);
         if let Some(wall) = wall {
             let (targets, _) = block.targets();

@@ -8,6 +8,7 @@ mod walls;
 use crate::block::FluidColumns;
 use crate::passes::{DENSEST, Surroundings};
 use crate::records::{Encoder, Record, record};
+use crate::search::Sorted;
 use crate::space::PairScale;
 use crate::state::State;
 use crate::terms::{Acceleration, DensityRate};
@@ -15,7 +16,7 @@ use crate::walls::{WallElements, WallSet};
 use bytemuck::Pod;
 use sph_decomp::{Askew, Halo, HaloPlan, Orb, Parts};
 use sph_kernels::Real;
-use sph_neighbors::{CellList, ClusterList};
+use sph_neighbors::ClusterList;
 
 /// The particles of a rank.
 ///
@@ -48,10 +49,12 @@ pub struct Rank<const D: usize, S: Real> {
     deviation: Vec<Record<S>>,
     /// Records with pressures.
     pressure: Vec<Record<S>>,
+    /// Halves of the support radii of the fluid over the largest; none where all are the same.
+    halves: Option<Vec<S>>,
     /// Whether the walls are where the fluid of this rank can see them.
     settled: bool,
     /// Where the fluid is, outer particles included.
-    cells: Option<CellList<D>>,
+    sorted: Option<Sorted<D>>,
     /// Lanes that were pairs, of all that were computed, when the fluid was last sorted.
     compactness: f64,
     plan: HaloPlan,
@@ -78,6 +81,8 @@ pub struct Passing<'a, const D: usize, S> {
     pub near_fluid: &'a ClusterList,
     /// Walls.
     pub walls: &'a [WallSet<D, S>],
+    /// Halves of the support radii of the fluid over the largest; none where all are the same.
+    pub halves: Option<&'a [S]>,
     /// Layout of the fluid.
     pub parts: Parts,
     /// Who sends what.
@@ -101,7 +106,8 @@ pub struct Passing<'a, const D: usize, S> {
 impl<'a, const D: usize, S> Passing<'a, D, S> {
     /// The surroundings of the fluid.
     pub fn surroundings(&self, scale: &'a PairScale<D>) -> Surroundings<'a, D, S> {
-        Surroundings { near_fluid: self.near_fluid, walls: self.walls, scale }
+        let Self { near_fluid, walls, halves, .. } = *self;
+        Surroundings { near_fluid, walls, scale, halves }
     }
 }
 
@@ -127,6 +133,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         Passing {
             near_fluid: &self.near_fluid,
             walls: &self.walls,
+            halves: self.halves.as_deref(),
             parts: self.fluid,
             plan: &self.plan,
             columns: FluidColumns {
@@ -175,7 +182,8 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             + self.shift.len() * size_of::<[f64; D]>()
             + self.force_rate.len() * (size_of::<[f64; D]>() + size_of::<DensityRate>() + 8)
             + self.near_fluid.bytes()
-            + self.cells.as_ref().map_or(0, CellList::bytes)
+            + self.sorted.as_ref().map_or(0, Sorted::bytes)
+            + self.halves.as_ref().map_or(0, |halves| size_of_val(&halves[..]))
             + self.walls.iter().map(WallSet::bytes).sum::<usize>()
     }
 }

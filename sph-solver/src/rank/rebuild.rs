@@ -7,22 +7,19 @@ use crate::bodies::Bodies;
 use crate::error::RunError;
 use crate::model::Model;
 use crate::records::Encoder;
+use crate::search::{Search, Seekers, Sorted};
 use crate::space::wrapped;
 use crate::state::State;
 use crate::team::Team;
 use crate::terms::{Acceleration, DensityRate};
 use bytemuck::Pod;
 use sph_decomp::{
-    Askew, Communicator, Halo, HaloPlan, MaxReach, Orb, Partition, Parts, Reach, Zone, ZoneOptions,
-    migrate,
+    Askew, Communicator, Halo, HaloPlan, MaxReach, MeanReach, Orb, Partition, Parts, Reach, Zone,
+    ZoneOptions, migrate,
 };
 use sph_geometry::Aabb;
 use sph_kernels::Real;
-use sph_neighbors::{CellList, ClusterList, Clusters, ColumnOrder, Grid};
-
-/// Edge of a search cell in reaches. Smaller cells have fewer candidates in more rows; measured best
-/// from a half to one.
-const CELL: f64 = 0.67;
+use sph_neighbors::{ClusterList, Clusters, ColumnOrder, GridError};
 
 /// The fluid is sorted again when this much of the compactness of its clusters is left.
 const LOOSE: f64 = 0.95;
@@ -49,16 +46,16 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         for x in &mut self.state.position {
             *x = wrapped(*x, &model.domain.0, &model.periods);
         }
-        let grid = Grid::new(model.domain.0, CELL * model.reach())?.periodic(model.periods)?;
+        let search = Search::new(model)?;
         let settled = self.settled;
         let divided = comm.size() > 1 && self.send_home(comm, division)?;
         if divided || !settled {
-            self.settle_walls(comm, team, model, encoder, &grid)?;
+            self.settle_walls(comm, team, model, encoder, &search)?;
         }
         let loose = self.near_fluid.compactness() < LOOSE * self.compactness;
         let sorts = comm.size() > 1 || !settled || !gone.is_empty() || loose;
         let outer = if sorts {
-            let outer = self.arrange_fluid(comm, model, &grid)?;
+            let outer = self.arrange_fluid(comm, model, &search)?;
             self.lay_out(model, encoder, &outer);
             outer
         } else {
@@ -67,9 +64,9 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.walls.retain(|wall| wall.frame().is_none());
         if !bodies.is_empty() {
             let fluid = Aabb::around(&self.state.position);
-            self.walls.extend(bodies.sets(&grid, encoder, &fluid, model.reach()));
+            self.walls.extend(bodies.sets(&search, encoder, &fluid)?);
         }
-        team.install(|| self.build_lists(&grid, model.reach(), &outer));
+        team.install(|| self.build_lists(&search, &outer))?;
         if sorts {
             self.compactness = self.near_fluid.compactness();
         }
@@ -140,14 +137,25 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         &mut self,
         comm: &dyn Communicator,
         model: &Model<D>,
-        grid: &Grid<D>,
+        search: &Search<'_, D>,
     ) -> Result<State<D>, RunError> {
-        let reach = Reach::Uniform(model.reach());
         let options = ZoneOptions { period: model.periods, ..ZoneOptions::default() };
-        let zone = Zone::build(&comm, &self.state.position, reach, MaxReach, &options)?;
+        let position = &self.state.position;
+        let zone = match search.reaches(self.state.mass.iter().copied()) {
+            None => {
+                let reach = Reach::Uniform(model.reach());
+                Zone::build(&comm, position, reach, MaxReach, &options)?
+            }
+            Some(mut reaches) => {
+                // Wider by more than the rounding of the search.
+                reaches.iter_mut().for_each(|reach| *reach *= 1.0 + 1e-4);
+                let reach = Reach::PerParticle(&reaches);
+                Zone::build(&comm, position, reach, MeanReach, &options)?
+            }
+        };
         let mut plan = zone.into_plan(&comm)?;
         self.sort_owned(model, &mut plan)?;
-        let outer = fetch_outer(comm, grid, &mut plan, &self.state)?;
+        let outer = fetch_outer(comm, search, &mut plan, &self.state)?;
         self.fluid.outer = outer.len();
         self.plan = plan;
         Ok(outer)
@@ -156,14 +164,15 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Order of the owned fluid: local before inner, then such that clusters are compact. Sums follow
     /// the order of the lists, so this one may depend on how particles came here.
     fn sort_owned(&mut self, model: &Model<D>, plan: &mut HaloPlan) -> Result<(), RunError> {
-        let columns = ColumnOrder::new(model.domain.0, model.spacing)?;
+        let levels = columns_of_levels(model)?;
         let position = &self.state.position;
         let is_inner = plan.is_inner(position.len());
-        // One number to compare: class, place in the columns, and who it is.
+        // One number to compare: class, level of the spacing, place in the columns, and who it is.
         let mut keys: Vec<u128> = (0..position.len())
             .map(|i| {
-                let place = u128::from(columns.key(&position[i])) << 32;
-                u128::from(is_inner[i]) << 96 | place | i as u128
+                let level = level_of(model, self.state.mass[i]).min(levels.len() - 1);
+                let place = u128::from(levels[level].key(&position[i])) << 32;
+                u128::from(is_inner[i]) << 112 | (level as u128) << 96 | place | i as u128
             })
             .collect();
         keys.sort_unstable();
@@ -188,30 +197,69 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.force_rate.resize(owned, Acceleration::default());
         self.density_rate.resize(owned, DensityRate::default());
         self.lowest_wall_pressure.resize(owned, 0.0);
+        self.halves = model.grading.map(|grading| {
+            let masses = self.state.mass.iter().chain(&outer.mass);
+            masses.map(|mass| S::from_f64(0.5 * grading.ratio::<D>(*mass))).collect()
+        });
     }
 
-    fn build_lists(&mut self, grid: &Grid<D>, reach: f64, outer: &State<D>) {
-        let targets = &self.state.position[..];
-        let clusters = Clusters::without_jumps(targets, &[self.fluid.local], JUMP * reach);
-        let cells = self.cells.get_or_insert_with(|| CellList::build(grid, &[], &[]));
+    fn build_lists(&mut self, search: &Search<'_, D>, outer: &State<D>) -> Result<(), RunError> {
+        let position = &self.state.position[..];
+        let reach = search.reach();
+        let clusters = &Clusters::without_jumps(position, &[self.fluid.local], JUMP * reach);
+        let all = search.reaches(self.state.mass.iter().chain(&outer.mass).copied());
+        let reaches = all.as_ref().map(|all| &all[..position.len()]);
+        let seekers = Seekers { clusters, position, reaches };
+        let sorted = match &mut self.sorted {
+            Some(sorted) => sorted,
+            none => none.insert(Sorted::new(search, &[], all.as_ref().map(|_| &[][..]), &[])?),
+        };
         if outer.is_empty() {
-            cells.rebuild(grid, targets, &self.state.id);
+            sorted.renew(search, position, reaches, &self.state.id)?;
         } else {
             let ids = [&self.state.id[..], &outer.id[..]].concat();
-            let positions = [targets, &outer.position[..]].concat();
-            cells.rebuild(grid, &positions, &ids);
+            let positions = [position, &outer.position[..]].concat();
+            sorted.renew(search, &positions, all.as_deref(), &ids)?;
         }
-        self.near_fluid.rebuild(&clusters, cells, targets, true, reach);
+        sorted.find_each_other(&mut self.near_fluid, search, &seekers);
         for wall in &mut self.walls {
-            wall.find(&clusters, targets, reach);
+            wall.find(search, &seekers);
         }
+        Ok(())
     }
+}
+
+/// The columns that particles of each level of spacing are sorted into: level l halves the largest
+/// spacing l times.
+fn columns_of_levels<const D: usize>(model: &Model<D>) -> Result<Vec<ColumnOrder<D>>, GridError> {
+    let levels = model.grading.map_or(1, |grading| 1 + level_of_ratio(grading.smallest()));
+    let of_level = |level: usize| {
+        let spacing = model.spacing * 0.5_f64.powi(level as i32);
+        // Particles of a level have a spacing between this one and half of it.
+        let typical = if levels > 1 { 0.75 * spacing } else { spacing };
+        ColumnOrder::new(model.domain.0, typical)
+    };
+    (0..levels).map(of_level).collect()
+}
+
+/// Level of the spacing of a particle.
+fn level_of<const D: usize>(model: &Model<D>, mass: f64) -> usize {
+    model.grading.map_or(0, |grading| level_of_ratio(grading.ratio::<D>(mass)))
+}
+
+/// How often 1 can be halved before it falls below a ratio.
+fn level_of_ratio(ratio: f64) -> usize {
+    let mut level = 0;
+    while 0.5_f64.powi(level + 1) >= ratio && level < 30 {
+        level += 1;
+    }
+    level as usize
 }
 
 /// Receives the state of the outer particles and sorts them: by cell, then by id.
 fn fetch_outer<const D: usize>(
     comm: &dyn Communicator,
-    grid: &Grid<D>,
+    search: &Search<'_, D>,
     plan: &mut HaloPlan,
     state: &State<D>,
 ) -> Result<State<D>, RunError> {
@@ -220,7 +268,7 @@ fn fetch_outer<const D: usize>(
     let mut order: Vec<u32> = (0..received.len() as u32).collect();
     order.sort_by_cached_key(|&k| {
         let (id, position) = place(&received[k as usize]);
-        (grid.key(&position), id)
+        (search.grid.key(&position), id)
     });
     let mut outer = State::default();
     for &k in &order {

@@ -4,12 +4,12 @@ use super::Rank;
 use crate::error::RunError;
 use crate::model::Model;
 use crate::records::Encoder;
+use crate::search::Search;
 use crate::team::Team;
 use crate::walls::WallSet;
 use bytemuck::Pod;
 use sph_decomp::{Columns, Communicator, Parts};
 use sph_kernels::Real;
-use sph_neighbors::Grid;
 use std::collections::BTreeMap;
 
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
@@ -21,7 +21,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         team: &Team,
         model: &Model<D>,
         encoder: &Encoder<D, S>,
-        grid: &Grid<D>,
+        search: &Search<'_, D>,
     ) -> Result<(), RunError> {
         let owned = self.elements.len();
         let mut all = self.elements.clone();
@@ -56,7 +56,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             }
         }
         self.solid = Parts { local: owned - inner, inner, outer: all.len() - owned };
-        self.walls = team.install(|| WallSet::of_all(&all, grid, encoder));
+        self.walls = team.install(|| WallSet::of_all(&all, search, encoder))?;
         self.settled = true;
         Ok(())
     }

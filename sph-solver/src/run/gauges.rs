@@ -30,23 +30,26 @@ impl<const D: usize> Field<'_, D> {
     /// At each of `points`: Σ w V, and Σ w V f for each of the `quantities` f. Collective.
     pub fn sums(&self, points: &[[f64; D]], quantities: &[Quantity]) -> Result<Vec<f64>, RunError> {
         let stride = 1 + quantities.len();
-        let radius = self.model.support_radius;
+        let largest = self.model.support_radius;
         let mut sums = vec![ExactSum::new(); stride * points.len()];
         let periods = &self.model.periods;
-        let (middle, half) = around(points, radius);
+        let (middle, half) = around(points, largest);
         for (i, x) in self.full.position.iter().enumerate() {
             let offset = space::offset(x, &middle, periods);
             if (0..D).any(|k| offset[k].abs() > half[k]) {
                 continue;
             }
             let volume = self.full.mass[i] / self.full.density[i];
+            let radius = self.model.radius_of(self.full.mass[i]);
+            let norm = (largest / radius).powi(D as i32);
             for (point, sums) in points.iter().zip(sums.chunks_exact_mut(stride)) {
                 let offset = space::offset(x, point, periods);
                 let distance = offset.iter().map(|d| d * d).sum::<f64>().sqrt();
                 if distance >= radius {
                     continue;
                 }
-                let weight = (self.weight)(distance / radius) * volume;
+                // The norm of the kernel goes with R^-D; what is left of it cancels in means.
+                let weight = (self.weight)(distance / radius) * volume * norm;
                 sums[0].add(weight);
                 for (sum, quantity) in sums[1..].iter_mut().zip(quantities) {
                     sum.add(weight * value(self.model, self.full, i, *quantity));
@@ -126,10 +129,10 @@ impl<const D: usize> Field<'_, D> {
     pub fn flow(&self, at: &[f64; D], normal: &[f64; D]) -> Result<f64, RunError> {
         let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
         let dot = |x: &[f64; D]| (0..D).map(|k| x[k] * normal[k]).sum::<f64>() / length;
-        let spacing = self.model.spacing;
         let mut sum = ExactSum::new();
         for (i, x) in self.full.position.iter().enumerate() {
             let offset = space::offset(x, at, &self.model.periods);
+            let spacing = self.model.spacing_of(self.full.mass[i]);
             let weight = 1.0 - dot(&offset).abs() / spacing;
             if weight > 0.0 {
                 let volume = self.full.mass[i] / self.full.density[i];

@@ -248,6 +248,7 @@ fn model<const D: usize>(constants: &Constants<D>, solids: Vec<SolidModel<D>>) -
     Model {
         spacing: constants.spacing,
         support_radius: constants.support_radius,
+        grading: constants.grading,
         skin: constants.skin,
         gravity: constants.gravity,
         equation_of_state: constants.equation_of_state,

@@ -20,7 +20,7 @@ use crate::terms::{
 use crate::walls::WallElements;
 use bytemuck::Pod;
 use sph_decomp::Communicator;
-use sph_kernels::{Real, WendlandC2};
+use sph_kernels::{Kernel, Real, WendlandC2};
 
 /// What a scene models; everything else is not compiled into its loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,7 +101,9 @@ fn run_in<const D: usize, S: Real + Pod>(
 /// δ-SPH with what a scene models.
 fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) -> Scheme<D, S> {
     type K = WendlandC2;
-    let (h, sound_speed) = (model.limits.smoothing_length, model.limits.sound_speed);
+    // The largest smoothing length: pairs know by how much theirs is smaller.
+    let h = model.support_radius / K::RADIUS_OVER_H;
+    let sound_speed = model.limits.sound_speed;
     let density0 = model.equation_of_state.density0();
     let softening = 0.01 * h * h;
     let stiffness = density0 / (sound_speed * sound_speed);

@@ -1,6 +1,7 @@
 //! The numbers of a run, all derived from the scene.
 
 use crate::eos::EquationOfState;
+use crate::grading::Grading;
 use crate::lio::Extremes;
 use crate::scene::{ErrorKind, Numerics, OnLost, Scene, SceneError, SoundSpeed};
 use crate::stability::largest_courant;
@@ -10,12 +11,14 @@ use serde::Serialize;
 /// Constants of a run, SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constants<const D: usize> {
-    /// Initial particle distance, m.
+    /// Initial particle distance, the largest where it varies, m.
     pub spacing: f64,
-    /// Smoothing length h, m.
+    /// Smoothing length h, the largest where it varies, m.
     pub smoothing_length: f64,
-    /// Support radius R of the kernel, m.
+    /// Support radius R of the kernel, the largest where it varies, m.
     pub support_radius: f64,
+    /// How radii follow from masses; none where all are the same.
+    pub grading: Option<Grading>,
     /// Verlet skin: neighbour lists reach this far beyond the support radius, m.
     pub skin: f64,
     /// Reference density ρ0 of the fluid, kg/m³.
@@ -53,11 +56,16 @@ impl<const D: usize> Constants<D> {
         self.cfl.min(largest_courant(self.density_diffusion, self.artificial_viscosity))
     }
 
+    /// A length that goes with the spacing, given for the largest: for the smallest.
+    pub fn finest(&self, length: f64) -> f64 {
+        self.grading.map_or(length, |grading| length * grading.smallest())
+    }
+
     /// Limits of the time step.
     pub fn step_limits(&self) -> StepLimits {
         StepLimits {
             cfl: self.courant(),
-            smoothing_length: self.smoothing_length,
+            smoothing_length: self.finest(self.smoothing_length),
             sound_speed: self.sound_speed,
             kinematic_viscosity: self.viscosity.unwrap_or(0.0) / self.density0,
         }
@@ -138,6 +146,7 @@ mod tests {
             spacing: 0.02,
             smoothing_length: 0.03,
             support_radius: 0.06,
+            grading: None,
             skin: 0.006,
             density0: 1000.0,
             sound_speed: 30.0,

@@ -117,6 +117,7 @@ impl<const D: usize> Setup<D> {
             spacing,
             smoothing_length: support_radius / radius_over_h,
             support_radius,
+            grading: None,
             skin: *numerics.skin * support_radius,
             density0,
             sound_speed,

@@ -8,9 +8,9 @@ use sph_kernels::Lanes;
 /// Methods Appl. Mech. Eng. 200, eq. 3. It acts on approaching and receding pairs alike.
 #[derive(Debug, Clone, Copy)]
 pub struct ArtificialViscosity {
-    /// α h c0 ρ0, kg/(m s).
+    /// α h c0 ρ0 for the largest smoothing length, kg/(m s).
     pub strength: f64,
-    /// 0.01 h², m²: keeps coincident particles finite.
+    /// 0.01 h² for the largest smoothing length, m²: keeps coincident particles finite.
     pub softening: f64,
 }
 

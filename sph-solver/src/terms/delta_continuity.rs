@@ -16,7 +16,7 @@ use sph_kernels::Lanes;
 /// costs nothing per pair: one term does both.
 #[derive(Debug, Clone, Copy)]
 pub struct DeltaContinuity<const D: usize> {
-    /// δ h c0, m²/s.
+    /// δ h c0 for the largest smoothing length, m²/s.
     pub strength: f64,
     /// (ρ0/c0²) g, kg/m⁴.
     pub hydrostatic_gradient: [f64; D],
@@ -26,7 +26,7 @@ impl<const D: usize> PairTerm<D, Deviation> for DeltaContinuity<D> {
     #[inline(always)]
     fn coefficient<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, pair: &Pair<D, L>) -> L {
         // Per target: −2 δ h c0 / ρ_i times Ψ, whose hydrostatic part is +G·r_ij.
-        let strength = lanes::<L>(-2.0 * self.strength) * i.inverse_density;
+        let strength = pair.stretched(lanes::<L>(-2.0 * self.strength) * i.inverse_density);
         let gradient: [L; D] = self.hydrostatic_gradient.map(lanes);
         let shifted = std::array::from_fn(|k| strength.mul_add(gradient[k], i.velocity[k]));
         let flux = dot(&difference(&shifted, &j.velocity), &pair.offset);

@@ -78,6 +78,25 @@ pub struct Pair<const D: usize, L> {
     pub unit: L,
     /// Units per metre.
     pub per_unit: L,
+    /// How the support radius of the pair differs from the largest; none where all are the same.
+    pub stretch: Option<Stretch<L>>,
+}
+
+/// The support radius of a pair where radii vary from particle to particle.
+#[derive(Debug, Clone, Copy)]
+pub struct Stretch<L> {
+    /// R_ij over the largest radius.
+    pub ratio: L,
+    /// The largest radius over R_ij.
+    pub inverse: L,
+}
+
+impl<const D: usize, L: Lanes> Pair<D, L> {
+    /// A quantity that grows with the smoothing length, given for the largest.
+    #[inline(always)]
+    pub fn stretched(&self, x: L) -> L {
+        self.stretch.map_or(x, |stretch| x * stretch.ratio)
+    }
 }
 
 /// What a wall term knows of the target besides [`Target`].
@@ -109,6 +128,16 @@ pub struct WallPair<const D: usize, L> {
     pub unit: L,
     /// Units per metre.
     pub per_unit: L,
+    /// As in [`Pair`]: a wall has the support radius of whoever looks at it.
+    pub stretch: Option<Stretch<L>>,
+}
+
+impl<const D: usize, L: Lanes> WallPair<D, L> {
+    /// A quantity that grows with the smoothing length, given for the largest.
+    #[inline(always)]
+    pub fn stretched(&self, x: L) -> L {
+        self.stretch.map_or(x, |stretch| x * stretch.ratio)
+    }
 }
 
 /// A contribution of the elements of a wall to a sweep whose targets carry `Q`.
@@ -198,7 +227,7 @@ impl<const D: usize, Q: Quantity, A: PairTerm<D, Q>, B: PairTerm<D, Q>> PairTerm
 }
 
 /// `strength π_ij` with `π_ij = (v_j − v_i)·r_ji / (|r_ij|² + softening)`: the form of artificial
-/// viscosity. `strength` in Pa s, `softening` in m².
+/// viscosity. `strength` in Pa s and `softening` in m² for the largest smoothing length.
 #[inline(always)]
 pub(crate) fn viscous<const D: usize, L: Lanes>(
     strength: f64,
@@ -207,8 +236,9 @@ pub(crate) fn viscous<const D: usize, L: Lanes>(
     j: &Source<D, L>,
     pair: &Pair<D, L>,
 ) -> L {
-    let strength = lanes::<L>(strength) * pair.per_unit;
+    let strength = pair.stretched(lanes::<L>(strength) * pair.per_unit);
     let softening = lanes::<L>(softening) * (pair.per_unit * pair.per_unit);
+    let softening = pair.stretched(pair.stretched(softening));
     // (v_j − v_i)·r_ji = (v_i − v_j)·r_ij.
     let rate = dot(&difference(&i.velocity, &j.velocity), &pair.offset);
     rate.div(pair.distance2 + softening) * strength
@@ -265,6 +295,7 @@ pub(crate) mod scalar {
                 weight: slope * volume * UNIT,
                 unit: UNIT,
                 per_unit: 1.0 / UNIT,
+                stretch: None,
             },
         )
     }
@@ -280,8 +311,8 @@ pub(crate) mod scalar {
         slope: f64,
     ) -> (Target<2, f64>, WallPair<2, f64>) {
         let (i, _, pair) = pair(r_iw, (velocity, [0.0; 2]), (quantity, 0.0), volume, slope);
-        let Pair { offset, distance2, weight, unit, per_unit, .. } = pair;
-        (i, WallPair { offset, distance2, normal, depth, weight, unit, per_unit })
+        let Pair { offset, distance2, weight, unit, per_unit, stretch, .. } = pair;
+        (i, WallPair { offset, distance2, normal, depth, weight, unit, per_unit, stretch })
     }
 
     /// What a wall term adds to the rate of the target, where ∇p/ρ is `gradient`.

@@ -35,7 +35,7 @@ impl<const D: usize> WallTerm<D, Pressure> for NoSlip {
         sum: &mut [L; D],
     ) {
         let below = dot(&pair.offset, &pair.normal) * pair.unit;
-        let distance = (below - pair.depth).max(lanes(self.smallest_distance));
+        let distance = (below - pair.depth).max(pair.stretched(lanes(self.smallest_distance)));
         let stretch = (distance + pair.depth).div(distance);
         // F V = w per unit of length.
         let factor =

@@ -41,6 +41,7 @@ impl<const D: usize> Case<D> {
         Model {
             spacing: dp,
             support_radius: 3.0 * dp,
+            grading: None,
             skin: self.skin * 3.0 * dp,
             gravity,
             equation_of_state: EquationOfState::Linear { density0: 1000.0, sound_speed },
