@@ -10,6 +10,7 @@
 //! * [`Lattice`]: where particles are placed; [`fill_lattice`] fills a region with them.
 //! * [`wall_elements`]: the material of walls cell by cell, one support radius deep and only near fluid;
 //!   [`body_elements`]: those of a solid that moves.
+//! * [`SpacingField`]: where particles are finer than elsewhere; [`CellTree`] divides space accordingly.
 //!
 //! Lengths are in metres, directions are unit vectors, `D` is the dimension.
 //!
@@ -21,6 +22,7 @@ mod aabb;
 mod affine;
 mod body_elements;
 mod boundary;
+mod graded;
 mod lattice;
 mod mesh;
 mod shape;
@@ -33,6 +35,7 @@ pub use aabb::Aabb;
 pub use affine::Affine;
 pub use body_elements::body_elements;
 pub use boundary::{Domain, WallParticles, free_cells, solid_at, wall_particles};
+pub use graded::{Cell, CellTree, Refinement, SpacingField, graded_wall_elements};
 pub use lattice::{
     Lattice, LatticeError, LatticeRuns, NearSurface, fill_lattice, lattice_inside, near_surface,
 };

@@ -1,0 +1,87 @@
+//! Wall elements of different sizes.
+
+use super::CellTree;
+use crate::aabb::Aabb;
+use crate::boundary::Domain;
+use crate::lattice::LatticeError;
+use crate::solid::Solid;
+use crate::wall_elements::{WallElements, wall_elements};
+
+/// Makes the wall elements of solids in the cells of a tree: what [`wall_elements`] makes in those of a
+/// lattice. `supports` is the support radius in spacings.
+///
+/// # Errors
+///
+/// As [`wall_elements`].
+pub fn graded_wall_elements<const D: usize>(
+    solids: &[Solid<D>],
+    tree: &CellTree<'_, D>,
+    supports: f64,
+    domain: &Domain<D>,
+) -> Result<WallElements<D>, LatticeError> {
+    let mut all = WallElements::default();
+    for (level, lattice) in tree.lattices().iter().enumerate() {
+        let edge = lattice.spacing();
+        // Particles beside a cell have up to twice the spacing of its edge.
+        let support = supports * (2.0 * edge).min(tree.field().coarsest());
+        let mut part = *domain;
+        if level > 0 {
+            // Cells of this level, the walls that particles in them see, and what is around these.
+            let bounds = tree.field().bounds_of(2.0 * edge).inflated(2.0 * support + 2.0 * edge);
+            part.bounds = common(&domain.bounds, &bounds);
+        }
+        if (0..D).any(|k| part.bounds.min[k] >= part.bounds.max[k]) {
+            continue;
+        }
+        let some = wall_elements(solids, lattice, support, &part)?;
+        for i in 0..some.positions.len() {
+            if tree.cell_at(&some.positions[i]).level as usize == level {
+                all.positions.push(some.positions[i]);
+                all.volumes.push(some.volumes[i]);
+                all.solids.push(some.solids[i]);
+                all.normals.push(some.normals[i]);
+                all.depths.push(some.depths[i]);
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn common<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
+    Aabb {
+        min: std::array::from_fn(|k| a.min[k].max(b.min[k])),
+        max: std::array::from_fn(|k| a.max[k].min(b.max[k])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graded::{Refinement, SpacingField};
+    use crate::lattice::Lattice;
+    use crate::shape::Shape;
+    use crate::solid::FluidSide;
+
+    #[test]
+    fn a_tank_is_as_thick_and_as_large_as_of_one_size() {
+        let tank = Shape::cuboid([0.0; 2], [2.0, 1.0]).unwrap();
+        let solids = [Solid::new("tank", tank, FluidSide::Inside)];
+        let target = Shape::sphere([1.0, 0.0], 0.05).unwrap();
+        let one = Refinement { target, spacing: 0.0125, within: 0.1, growth: 1.1 };
+        let field = SpacingField::new(0.05, vec![one], [None; 2]);
+        let lattice = Lattice::new([0.0; 2], 0.05).unwrap();
+        let tree = CellTree::new(&lattice, &field).unwrap();
+        let domain = Domain::new(Aabb::new([-0.5, -0.5], [2.5, 1.5]));
+        let graded = graded_wall_elements(&solids, &tree, 3.0, &domain).unwrap();
+        let plain = wall_elements(&solids, &lattice, 0.15, &domain).unwrap();
+        // Everything down to the support of the coarsest particles where they are; fine cells need less.
+        let (fine, coarse) =
+            (graded.volumes.iter().sum::<f64>(), plain.volumes.iter().sum::<f64>());
+        assert!(fine < coarse && fine > 0.8 * coarse, "{fine} {coarse}");
+        let below: f64 = (0..graded.positions.len())
+            .filter(|&i| (graded.positions[i][0] - 1.0).abs() < 0.05 && graded.depths[i] < 0.025)
+            .map(|i| graded.volumes[i])
+            .sum();
+        assert!((below - 0.1 * 0.025).abs() < 1e-12, "{below}");
+    }
+}
