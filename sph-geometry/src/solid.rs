@@ -1,6 +1,7 @@
 //! Solids: shapes with material on one side of their surface.
 
-use crate::shape::{Nearest, Shape};
+use crate::aabb::Aabb;
+use crate::shape::{Nearest, Shape, SignedDistance};
 
 /// On which side of a surface fluid can be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -71,6 +72,25 @@ impl<const D: usize> Solid<D> {
     /// The nearest point of the wall.
     pub fn closest_point(&self, x: &[f64; D]) -> [f64; D] {
         self.shape.closest_point(x)
+    }
+}
+
+/// The material of a solid as a set of points: becomes a shape by [`Shape::custom`].
+impl<const D: usize> SignedDistance<D> for Solid<D> {
+    fn nearest(&self, x: &[f64; D]) -> Nearest<D> {
+        let (depth, normal) = self.depth_and_normal(x);
+        Nearest { distance: -depth, normal }
+    }
+
+    fn bounding_box(&self) -> Aabb<D> {
+        match self.fluid_side {
+            FluidSide::Inside => Aabb { min: [f64::NEG_INFINITY; D], max: [f64::INFINITY; D] },
+            FluidSide::Outside => self.shape.bounding_box(),
+        }
+    }
+
+    fn signed_distance(&self, x: &[f64; D]) -> f64 {
+        -self.depth_in_solid(x)
     }
 }
 

@@ -29,6 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Model {
         spacing: dp,
         support_radius,
+        grading: None,
         skin: 0.1 * support_radius,
         gravity,
         equation_of_state,

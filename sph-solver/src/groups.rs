@@ -25,9 +25,9 @@ pub struct GroupView<'a, const D: usize, S> {
     pub list: &'a ClusterList,
     /// Scale of the pairs.
     pub scale: &'a PairScale<D>,
-    /// Halves of the support radii of the targets over the largest, and of all records of the fluid,
-    /// indexed as they are; none where all are the same.
-    pub halves: Option<&'a [S]>,
+    /// Halves of the support radii of the targets and of the sources over the largest, indexed as their
+    /// records; none where all are the same.
+    pub halves: Option<(&'a [S], &'a [S])>,
     /// What wall terms are told of the targets; sums over fluid have no use for it.
     pub beside: Option<Beside<'a, D>>,
 }
@@ -96,8 +96,8 @@ where
     ) -> bool {
         let GroupView { targets, sources: records, list, scale, halves, .. } = view;
         let (terms, none) = (self.0, (&[][..], &[][..]));
-        if let Some(all) = halves {
-            let (metric, halves) = (PhantomData::<Graded>, (&all[first..], all));
+        if let Some((targets_halves, halves)) = halves {
+            let (metric, halves) = (PhantomData::<Graded>, (&targets_halves[first..], halves));
             let pairs = Neighbors { records, list, terms, halves, metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         } else if scale.is_periodic() {
@@ -128,18 +128,18 @@ where
     ) -> bool {
         let GroupView { targets, sources: records, list, scale, halves, beside } = view;
         let Some(beside) = beside else { return false };
-        let term = self.0;
-        if let Some(all) = halves {
-            let (metric, halves) = (PhantomData::<Graded>, &all[first..]);
+        let (term, none) = (self.0, (&[][..], &[][..]));
+        if let Some((targets_halves, halves)) = halves {
+            let (metric, halves) = (PhantomData::<Graded>, (&targets_halves[first..], halves));
             let pairs = WallNeighbors { records, list, term, beside, halves, metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         } else if scale.is_periodic() {
             let metric = PhantomData::<Periodic>;
-            let pairs = WallNeighbors { records, list, term, beside, halves: &[], metric };
+            let pairs = WallNeighbors { records, list, term, beside, halves: none, metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         } else {
             let metric = PhantomData::<Open>;
-            let pairs = WallNeighbors { records, list, term, beside, halves: &[], metric };
+            let pairs = WallNeighbors { records, list, term, beside, halves: none, metric };
             sweep::<D, Q, K, S, _>(first, targets, density, scale, &pairs, rates)
         }
     }

@@ -41,8 +41,17 @@ impl<'a, const D: usize> Search<'a, D> {
         Some(masses.map(|mass| self.model.radius_of(mass) + self.model.skin).collect())
     }
 
-    /// [`reaches`](Self::reaches) of elements of walls of these volumes (m^D). Only what is fast depends
-    /// on them: a wall is seen as far as its beholder's support reaches.
+    /// Halves of the support radii of elements of walls of these volumes (m^D) over the largest; nothing
+    /// where all are the same.
+    pub fn halves_of_volumes(&self, volumes: &[f64]) -> impl Iterator<Item = f64> {
+        let density = self.model.equation_of_state.density0();
+        let grading = self.model.grading.into_iter();
+        grading.flat_map(move |grading| {
+            volumes.iter().map(move |volume| 0.5 * grading.ratio::<D>(density * volume))
+        })
+    }
+
+    /// [`reaches`](Self::reaches) of elements of walls of these volumes (m^D).
     pub fn reaches_of_volumes(&self, volumes: &[f64]) -> Option<Vec<f64>> {
         let density = self.model.equation_of_state.density0();
         self.reaches(volumes.iter().map(|volume| density * volume))
@@ -127,14 +136,14 @@ impl<const D: usize> Sorted<D> {
         self.find(list, search, seekers, true, PairReach::Mean);
     }
 
-    /// Finds the particles within the reach of others.
+    /// Finds the particles within the reach of others, or of their own if that is larger.
     pub fn find_for(
         &self,
         list: &mut ClusterList,
         search: &Search<'_, D>,
         seekers: &Seekers<'_, D>,
     ) {
-        self.find(list, search, seekers, false, PairReach::Target);
+        self.find(list, search, seekers, false, PairReach::Max);
     }
 
     fn find(

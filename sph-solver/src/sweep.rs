@@ -81,8 +81,10 @@ pub struct WallNeighbors<'a, const D: usize, S, T, M> {
     pub term: T,
     /// The targets.
     pub beside: Beside<'a, D>,
-    /// Halves of the support radii of the targets over the largest; empty where all are the same.
-    pub halves: &'a [S],
+    /// Halves of the support radii over the largest, of the targets of the sweep and of the elements;
+    /// empty where all are the same. A pair has the larger of both: a wall that is coarser than the fluid
+    /// beside it must not have gaps.
+    pub halves: (&'a [S], &'a [S]),
     /// How coordinates are subtracted.
     pub metric: PhantomData<M>,
 }
@@ -169,13 +171,8 @@ where
     ) {
         let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
         let to_q: L = lanes(scale.unit / scale.support_radius);
-        let Self { records, list, term, beside, halves, .. } = *self;
-        let (mut factor, mut stretch, mut to_q) = (L::zero(), None, to_q);
-        if M::GRADED {
-            let half: L = of_lanes(halves, &own);
-            let own = Stretch::of(half + half);
-            (factor, to_q, stretch) = (own.of_gradients::<D>(), to_q * own.inverse, Some(own));
-        }
+        let Self { records, list, term, beside, halves: (of_targets, halves), .. } = *self;
+        let half = if M::GRADED { of_lanes(of_targets, &own) } else { L::zero() };
         let Beside { lowest_pressure, pressure_gradient, position: places, frame } = beside;
         let last = own.end - 1;
         let of_own = |f: &dyn Fn(usize) -> f64| -> L {
@@ -204,8 +201,16 @@ where
                 from_fn(|k| M::difference(position[k], L::splat(record[k]), scale, k));
             let normal: [L; D] = from_fn(|k| L::splat(record[velocity_word(k)]));
             let distance2 = dot(&offset, &offset);
-            let weight = K::slope_shape(distance2.sqrt() * to_q) * L::splat(record[WEIGHT]);
-            let weight = if M::GRADED { weight * factor } else { weight };
+            let distance = distance2.sqrt();
+            let (mut q, mut weight, mut stretch) =
+                (distance * to_q, L::splat(record[WEIGHT]), None);
+            if M::GRADED {
+                let half = half.max(L::splat(halves[j as usize]));
+                let own = Stretch::of(half + half);
+                (q, weight) = (q * own.inverse, weight * own.of_gradients::<D>());
+                stretch = Some(own);
+            }
+            let weight = K::slope_shape(q) * weight;
             let depth = L::splat(record[QUANTITY]);
             let pair =
                 WallPair { offset, distance2, normal, depth, weight, unit, per_unit, stretch };

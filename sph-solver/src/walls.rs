@@ -146,6 +146,8 @@ pub struct WallSet<const D: usize, S> {
     pub solid: u16,
     /// Records in canonical order: place, normal, depth, weight.
     pub records: Vec<Record<S>>,
+    /// Halves of the support radii of the elements over the largest; empty where all are the same.
+    pub halves: Vec<S>,
     /// Elements near every owned fluid particle.
     pub near: ClusterList,
     sorted: Sorted<D>,
@@ -215,6 +217,7 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         let set = Self {
             solid: own.solid.first().copied().unwrap_or(0),
             records: (0..own.len()).map(write).collect(),
+            halves: search.halves_of_volumes(&own.volume).map(S::from_f64).collect(),
             near: ClusterList::default(),
             sorted,
             motion: None,
@@ -252,6 +255,7 @@ impl<const D: usize, S: Real> WallSet<D, S> {
     pub fn bytes(&self) -> usize {
         let moving = self.motion.as_ref().map_or(0, |motion| 4 * motion.elements.len());
         self.records.len() * size_of::<Record<S>>()
+            + self.halves.len() * size_of::<S>()
             + self.near.bytes()
             + self.sorted.bytes()
             + moving

@@ -3,6 +3,7 @@
 use super::SpacingField;
 use crate::aabb::Aabb;
 use crate::lattice::{CellBox, Lattice, LatticeError};
+use crate::solid::{Solid, depth_in_solids};
 
 /// A cell of the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +26,8 @@ pub struct CellTree<'a, const D: usize> {
     /// Lattices of all levels, the coarsest first.
     lattices: Vec<Lattice<D>>,
     field: &'a SpacingField<D>,
+    /// Solids in which cells may be larger with depth, and the support radius in spacings.
+    solids: Option<(&'a [Solid<D>], f64)>,
 }
 
 /// Edges may exceed spacings by this share: rounding must not halve a cell.
@@ -43,7 +46,14 @@ impl<'a, const D: usize> CellTree<'a, D> {
             spacing *= 0.5;
             lattices.push(Lattice::new(lattice.origin(), spacing)?);
         }
-        Ok(Self { lattices, field })
+        Ok(Self { lattices, field, solids: None })
+    }
+
+    /// The same for the walls of these solids: at a depth that only particles of a larger spacing see, with
+    /// a support radius of `supports` spacings, cells have that spacing.
+    #[must_use]
+    pub fn of_walls(&self, solids: &'a [Solid<D>], supports: f64) -> Self {
+        Self { solids: Some((solids, supports)), ..self.clone() }
     }
 
     /// Lattices of all levels, the coarsest first.
@@ -94,7 +104,11 @@ impl<'a, const D: usize> CellTree<'a, D> {
     fn leaf(&self, level: usize, index: &[i64; D]) -> Option<Cell<D>> {
         let lattice = &self.lattices[level];
         let (center, edge) = (lattice.point(index), lattice.spacing());
-        let spacing = self.field.at(&center);
+        let mut spacing = self.field.at(&center);
+        if let Some((solids, supports)) = self.solids.filter(|_| edge > spacing) {
+            let seen_by = depth_in_solids(solids, &center) / supports;
+            spacing = spacing.max(seen_by.min(self.field.coarsest()));
+        }
         let whole = edge <= spacing * (1.0 + SLACK) || level + 1 == self.lattices.len();
         whole.then_some(Cell { level: level as u32, center, edge, spacing: spacing.max(edge) })
     }

@@ -19,10 +19,11 @@ pub fn graded_wall_elements<const D: usize>(
     supports: f64,
     domain: &Domain<D>,
 ) -> Result<WallElements<D>, LatticeError> {
+    let tree = tree.of_walls(solids, supports);
     let mut all = WallElements::default();
     for (level, lattice) in tree.lattices().iter().enumerate() {
         let edge = lattice.spacing();
-        // Particles beside a cell have up to twice the spacing of its edge.
+        // Cells of a level hold what particles of up to twice its spacing see.
         let support = supports * (2.0 * edge).min(tree.field().coarsest());
         let mut part = *domain;
         if level > 0 {
@@ -74,10 +75,10 @@ mod tests {
         let domain = Domain::new(Aabb::new([-0.5, -0.5], [2.5, 1.5]));
         let graded = graded_wall_elements(&solids, &tree, 3.0, &domain).unwrap();
         let plain = wall_elements(&solids, &lattice, 0.15, &domain).unwrap();
-        // Everything down to the support of the coarsest particles where they are; fine cells need less.
         let (fine, coarse) =
             (graded.volumes.iter().sum::<f64>(), plain.volumes.iter().sum::<f64>());
-        assert!(fine < coarse && fine > 0.8 * coarse, "{fine} {coarse}");
+        assert!((fine / coarse - 1.0).abs() < 0.02, "{fine} {coarse}");
+        assert!(graded.positions.len() < 2 * plain.positions.len());
         let below: f64 = (0..graded.positions.len())
             .filter(|&i| (graded.positions[i][0] - 1.0).abs() < 0.05 && graded.depths[i] < 0.025)
             .map(|i| graded.volumes[i])

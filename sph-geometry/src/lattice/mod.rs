@@ -120,6 +120,16 @@ impl<const D: usize> Lattice<D> {
         self.spacing
     }
 
+    /// The lattice with the same corner whose cells are so many times longer.
+    ///
+    /// # Panics
+    ///
+    /// When the factor is not positive and finite.
+    pub fn coarser(&self, factor: f64) -> Self {
+        assert!(factor > 0.0 && factor.is_finite(), "a factor of lengths");
+        Self { origin: self.origin, spacing: self.spacing * factor }
+    }
+
     /// The point with an index.
     pub fn point(&self, index: &[i64; D]) -> [f64; D] {
         std::array::from_fn(|k| self.origin[k] + (index[k] as f64 + 0.5) * self.spacing)

@@ -51,7 +51,7 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
         block: &mut Block<'_, D, S, R>,
     ) {
         let list = self.near_fluid;
-        let Self { scale, halves, .. } = *self;
+        let (scale, halves) = (self.scale, self.halves.map(|all| (all, all)));
         let view = GroupView { targets: old, sources: old, list, scale, halves, beside: None };
         if !sum.sum(view, block.first, block.density, block.rates) {
             block.rates.fill(R::default());
@@ -76,7 +76,7 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
                 sources: &wall.records,
                 list: &wall.near,
                 scale: self.scale,
-                halves: self.halves,
+                halves: self.halves.map(|fluid| (fluid, &wall.halves[..])),
                 beside: Some(Beside { frame: wall.frame(), ..targets.beside }),
             };
             if sum.sum(view, targets.first, targets.density, &mut own) {
@@ -95,7 +95,7 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
     ) {
         let mut sums = vec![VectorSum::default(); block.len()];
         let list = self.near_fluid;
-        let Self { scale, halves, .. } = *self;
+        let (scale, halves) = (self.scale, self.halves.map(|all| (all, all)));
         let view = GroupView { targets: old, sources: old, list, scale, halves, beside: None };
         fluid.sum(view, block.first, block.density, &mut sums);
         if let Some(wall) = wall {

@@ -12,6 +12,7 @@ use super::overrides;
 use super::probe::{Axis, Probe};
 use super::reader;
 use super::reference::{Reference, StudyKeys};
+use super::refine::Refine;
 use super::solid::Solid;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -41,6 +42,9 @@ pub struct Scene {
     pub periodic: At<Vec<At<Axis>>>,
     /// Resolution, scheme and its constants.
     pub numerics: Numerics,
+    /// Where particles are finer than `numerics.spacing`.
+    #[serde(default)]
+    pub refine: Vec<At<Refine>>,
     /// Fluids by name; exactly one for now.
     #[serde(default)]
     pub fluid: BTreeMap<String, At<Fluid>>,

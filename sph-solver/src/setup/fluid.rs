@@ -49,12 +49,10 @@ impl<const D: usize> Filling<D> {
         scene: &Scene,
         fluid: &Fluid,
         state: &EquationOfState,
-        lattice: &Lattice<D>,
-        mass: f64,
+        cells: &Cells<'_, D>,
     ) -> Result<Particles<D>, SceneError> {
-        let column = LazyCell::new(|| {
-            Column::new(*fluid.density, &scene.gravity(), lattice, &self.position)
-        });
+        let column =
+            LazyCell::new(|| Column::new(*fluid.density, &scene.gravity(), cells, &self.position));
         let mut particles = Particles::default();
         for (region, range) in regions(fluid, &self.ends) {
             let At { value: pressure, place } = region.pressure.as_ref().unwrap_or(&fluid.pressure);
@@ -75,10 +73,31 @@ impl<const D: usize> Filling<D> {
                     };
                     return Err(scene.error(*place, kind));
                 }
+                let mass = *fluid.density * cells.volume(i);
                 particles.push(x, self.velocity[i], density, mass, 0);
             }
         }
         Ok(particles)
+    }
+}
+
+/// The space of each particle at the start.
+pub struct Cells<'a, const D: usize> {
+    /// The lattice, the coarsest one where the spacing varies.
+    pub lattice: &'a Lattice<D>,
+    /// Volumes of the particles, m^D; none where they are the cells of the lattice.
+    pub volume: Option<&'a [f64]>,
+}
+
+impl<const D: usize> Cells<'_, D> {
+    /// Volume of particle `i`, m^D.
+    fn volume(&self, i: usize) -> f64 {
+        self.volume.map_or(self.lattice.spacing().powi(D as i32), |volume| volume[i])
+    }
+
+    /// Edge of its cell, m.
+    fn edge(&self, i: usize) -> f64 {
+        self.volume.map_or(self.lattice.spacing(), |volume| volume[i].powf(1.0 / D as f64))
     }
 }
 
@@ -120,23 +139,26 @@ pub struct Column<const D: usize> {
 }
 
 impl<const D: usize> Column<D> {
-    /// The columns of fluid at `position`. The surface of each is half a spacing of the `lattice`
-    /// above its highest particle.
+    /// The columns of fluid at `position`. The surface of each is half a spacing above its highest
+    /// particles.
     pub fn new(
         density0: f64,
         gravity: &[f64; D],
-        lattice: &Lattice<D>,
+        cells: &Cells<'_, D>,
         position: &[[f64; D]],
     ) -> Self {
         let weight = gravity.map(|g| density0 * g);
         let strength = weight.iter().map(|w| w * w).sum::<f64>().sqrt();
-        let (body, count) = bodies(lattice, position);
+        let (body, count) = match cells.volume {
+            None => bodies(cells.lattice, position),
+            // Packed particles may leave a cell of the lattice empty, but none that is a half longer.
+            Some(_) => bodies(&cells.lattice.coarser(1.5), position),
+        };
         let mut tops = vec![f64::INFINITY; count];
-        for (x, body) in position.iter().zip(&body) {
+        for (i, (x, body)) in position.iter().zip(&body).enumerate() {
             let top = &mut tops[*body as usize];
-            *top = top.min(dot(&weight, x));
+            *top = top.min(dot(&weight, x) - 0.5 * cells.edge(i) * strength);
         }
-        tops.iter_mut().for_each(|top| *top -= 0.5 * lattice.spacing() * strength);
         Self { weight, body, tops }
     }
 
@@ -158,21 +180,23 @@ mod tests {
     #[test]
     fn pressure_grows_with_depth_along_any_gravity() {
         let lattice = Lattice::new([0.0; 2], 1.0).unwrap();
+        let cells = Cells { lattice: &lattice, volume: None };
         let position = [[0.5, 0.5], [0.5, 1.5]];
-        let column = Column::new(1000.0, &[0.0, -10.0], &lattice, &position);
+        let column = Column::new(1000.0, &[0.0, -10.0], &cells, &position);
         assert_eq!(column.pressure(1, &position[1]), 5_000.0);
         assert_eq!(column.pressure(0, &position[0]), 15_000.0);
         let position = [[2.5, 0.5], [3.5, 0.5], [3.5, 1.5]];
-        let column = Column::new(1000.0, &[10.0, 0.0], &lattice, &position);
+        let column = Column::new(1000.0, &[10.0, 0.0], &cells, &position);
         assert_eq!(column.pressure(2, &position[2]), 15_000.0);
     }
 
     #[test]
     fn every_body_of_water_has_its_own_surface() {
         let lattice = Lattice::new([0.0; 2], 1.0).unwrap();
+        let cells = Cells { lattice: &lattice, volume: None };
         // A column of two cells, a gap of one, a pool of one cell; corners do not connect.
         let position = [[0.5, 0.5], [0.5, 1.5], [2.5, 0.5], [1.5, 2.5]];
-        let column = Column::new(1000.0, &[0.0, -10.0], &lattice, &position);
+        let column = Column::new(1000.0, &[0.0, -10.0], &cells, &position);
         let pressure: Vec<f64> =
             position.iter().enumerate().map(|(i, x)| column.pressure(i, x)).collect();
         assert_eq!(pressure, [15_000.0, 5_000.0, 5_000.0, 5_000.0]);

@@ -2,9 +2,9 @@
 
 use super::report::MeshSummary;
 use super::shapes::Shapes;
-use super::{domain, fluid_box, lattice_error, regions, sizes, walls};
+use super::{domain, fluid_box, graded, lattice_error, regions, sizes, walls};
 use crate::scene::{ErrorKind, Scene, SceneError};
-use sph_geometry::{Aabb, Lattice, Shape, Solid};
+use sph_geometry::{Aabb, Lattice, Shape, Solid, SpacingField};
 
 /// The shapes of a scene and the lattice on which its particles lie.
 #[derive(Debug, Clone)]
@@ -19,6 +19,8 @@ pub struct Geometry<const D: usize> {
     pub lattice: Lattice<D>,
     /// The box that particles may be in, m.
     pub domain: Aabb<D>,
+    /// The spacing at every place; none where it is the same everywhere.
+    pub spacing: Option<SpacingField<D>>,
     pub(super) meshes: Vec<MeshSummary>,
     /// What deserves a look about the meshes.
     pub(super) notes: Vec<String>,
@@ -49,8 +51,9 @@ impl<const D: usize> Geometry<D> {
             .map_err(|error| lattice_error(scene, numerics.spacing.place, &error))?;
         let support = *numerics.spacing * *numerics.support;
         let domain = domain::domain(scene, &solids, &fluid_box, support);
+        let spacing = graded::spacing_field(scene, &solids, &domain, &mut shapes)?;
         let Shapes { meshes, notes, .. } = shapes;
-        Ok(Self { solids, regions, fluid_box, lattice, domain, meshes, notes })
+        Ok(Self { solids, regions, fluid_box, lattice, domain, spacing, meshes, notes })
     }
 
     /// Support radius of a scene, m.

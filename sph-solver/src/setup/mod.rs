@@ -10,6 +10,7 @@ mod domain;
 mod estimate;
 mod fluid;
 mod geometry;
+mod graded;
 mod jitter;
 mod memory;
 mod moving;
@@ -41,9 +42,11 @@ pub use sampling::{BlockKind, Sample};
 
 use crate::bodies::Body;
 use crate::eos::EquationOfState;
+use crate::grading::Grading;
 use crate::model::SolidModel;
 use crate::scene::{self, At, Equation, ErrorKind, Fluid, Kernel, Region, Scene, SceneError};
-use fluid::Filling;
+use fluid::{Cells, Filling};
+use graded::GradedFluid;
 use shapes::Shapes;
 use sph_geometry::{Aabb, Lattice, LatticeError, Solid, lattice_inside};
 use sph_kernels::{Kernel as _, WendlandC2};
@@ -80,29 +83,41 @@ const LARGEST: &str = "4.2e9 is the most";
 impl<const D: usize> Setup<D> {
     /// Makes particles and constants. Reads the meshes that the scene names.
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
-        let Geometry { solids, regions, fluid_box, lattice, domain, meshes, mut notes } =
-            Geometry::<D>::read(scene, Some(memory::to_set_up::<D>(1.0)))?;
+        let mut geometry = Geometry::<D>::read(scene, Some(memory::to_set_up::<D>(1.0)))?;
+        let mut notes = std::mem::take(&mut geometry.notes);
+        let Geometry { solids, regions, fluid_box, lattice, domain, meshes, .. } = &geometry;
         let (fluid_name, fluid) = scene.fluid()?;
         let numerics = &scene.numerics;
         let spacing = *numerics.spacing;
-        let (mut position, mut ends) = fill(scene, fluid, &regions, &lattice)?;
+        let (mut position, mut ends) = match &geometry.spacing {
+            None => fill(scene, fluid, regions, lattice)?,
+            Some(field) => graded::cells(scene, &geometry, field)?,
+        };
+        let explain = |error| sizes::explain(error, scene, solids, regions, meshes);
         notes.extend(
-            overlap::give_way(scene, fluid_name, fluid, &solids, &mut position, &mut ends)
-                .map_err(|error| sizes::explain(error, scene, &solids, &regions, &meshes))?,
+            overlap::give_way(scene, fluid_name, fluid, solids, &mut position, &mut ends)
+                .map_err(explain)?,
         );
         if position.is_empty() {
             let error = nothing(scene, fluid);
-            return Err(sizes::explain(error, scene, &solids, &regions, &meshes));
+            return Err(explain(error));
         }
         let position = jitter::shifted(fluid, spacing, position);
-        let filling = Filling::new(scene, fluid, position, ends)?;
-        domain::check(scene, fluid, &domain, &filling.position)?;
+        let (filling, volume) = match &geometry.spacing {
+            None => (Filling::new(scene, fluid, position, ends)?, None),
+            Some(field) => {
+                let graded = graded::pack(scene, &geometry, field, position, ends)?;
+                let GradedFluid { position, volume, ends } = graded;
+                (Filling::new(scene, fluid, position, ends)?, Some(volume))
+            }
+        };
+        domain::check(scene, fluid, domain, &filling.position)?;
         let support = Geometry::<D>::support(scene);
-        notes.extend(notes::on_probes(scene, &domain, &solids, &filling.position, support));
+        notes.extend(notes::on_probes(scene, domain, solids, &filling.position, support));
         let gravity = scene.gravity();
-        let mut bodies = moving::bodies(scene, &solids)?;
+        let mut bodies = moving::bodies(scene, solids)?;
         let initial_speed = filling.largest_speed().max(moving::largest_speed(scene, &bodies));
-        let expected_speed = expected_speed(&gravity, height(&gravity, &fluid_box), initial_speed);
+        let expected_speed = expected_speed(&gravity, height(&gravity, fluid_box), initial_speed);
         let sound_speed = constants::sound_speed(scene, numerics, expected_speed)?;
         let density0 = *fluid.density;
         let equation_of_state = match numerics.equation_of_state {
@@ -117,8 +132,14 @@ impl<const D: usize> Setup<D> {
             spacing,
             smoothing_length: support_radius / radius_over_h,
             support_radius,
-            grading: None,
-            skin: *numerics.skin * support_radius,
+            grading: geometry.spacing.as_ref().map(|field| {
+                Grading::new(density0 * spacing.powi(D as i32), field.finest() / field.coarsest())
+            }),
+            skin: *numerics.skin
+                * geometry
+                    .spacing
+                    .as_ref()
+                    .map_or(support_radius, |field| field.finest() * *numerics.support),
             density0,
             sound_speed,
             equation_of_state,
@@ -129,29 +150,29 @@ impl<const D: usize> Setup<D> {
             viscosity: scene.viscosity(),
             // Only a scheme that shifts particles asks, and an answer takes a search of the domain.
             closed: numerics.scheme == scene::Scheme::DeltaPlus
-                && walls::is_closed(scene, &solids, &lattice, &domain, filling.position.len())?,
+                && walls::is_closed(scene, &geometry, filling.position.len(), volume.as_deref())?,
             cavitation_pressure: fluid.cavitation_pressure.map(|pressure| *pressure),
             domain: (domain.min, domain.max),
-            periods: domain::periods(scene, &domain, spacing, Geometry::<D>::reach(scene))?,
+            periods: domain::periods(scene, domain, spacing, Geometry::<D>::reach(scene))?,
             on_lost: numerics.on_lost,
         };
-        let mass = density0 * spacing.powi(D as i32);
-        let mut particles = filling.finish(scene, fluid, &equation_of_state, &lattice, mass)?;
-        walls::add_walls(scene, &solids, &mut bodies, &lattice, &constants, &mut particles)
-            .map_err(|error| sizes::explain(error, scene, &solids, &regions, &meshes))?;
-        sizes::without_particles(scene, &solids, &regions, &meshes, &domain, &particles)?;
-        notes.extend(thickness::notes(scene, &solids, &domain, &particles));
+        let cells = Cells { lattice, volume: volume.as_deref() };
+        let mut particles = filling.finish(scene, fluid, &equation_of_state, &cells)?;
+        walls::add_walls(scene, &geometry, &mut bodies, &constants, &mut particles)
+            .map_err(explain)?;
+        sizes::without_particles(scene, solids, regions, meshes, domain, &particles)?;
+        notes.extend(thickness::notes(scene, solids, domain, &particles));
         Ok(Self {
             particles,
             constants,
-            solids: walls::models(scene, &solids),
-            at_rest: moving::at_rest(scene, &solids),
+            solids: walls::models(scene, solids),
+            at_rest: moving::at_rest(scene, solids),
             bodies,
             expected_speed,
             initial_speed,
-            volume_of_regions: volume::of_regions(&regions, &solids),
+            volume_of_regions: volume::of_regions(regions, solids),
             notes_on_geometry: notes,
-            meshes,
+            meshes: geometry.meshes,
         })
     }
 }
@@ -159,7 +180,11 @@ impl<const D: usize> Setup<D> {
 impl<const D: usize> Setup<D> {
     /// Volume that the fluid particles hold at rest, m³ (m² in two dimensions).
     pub fn volume(&self) -> f64 {
-        self.particles.of_kind(0).len() as f64 * self.constants.spacing.powi(D as i32)
+        let fluid = self.particles.of_kind(0);
+        match self.constants.grading {
+            None => fluid.len() as f64 * self.constants.spacing.powi(D as i32),
+            Some(_) => self.particles.mass[fluid].iter().sum::<f64>() / self.constants.density0,
+        }
     }
 
     /// Memory of a run on all ranks together, bytes.

@@ -3,12 +3,12 @@
 use super::constants::Constants;
 use super::particles::Particles;
 use super::shapes::Shapes;
-use super::{LARGEST, MOST_PARTICLES, lattice_error, memory, moving, too_many};
+use super::{Geometry, LARGEST, MOST_PARTICLES, graded, lattice_error, memory, moving, too_many};
 use crate::bodies::Body;
 use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
 use sph_geometry::{
-    Aabb, Domain, FluidSide, Lattice, Solid, WallElements, free_cells, wall_elements,
+    Aabb, Domain, FluidSide, Lattice, LatticeError, Solid, WallElements, free_cells, wall_elements,
     wall_particles,
 };
 
@@ -64,34 +64,47 @@ pub fn models<const D: usize>(scene: &Scene, solids: &[Solid<D>]) -> Vec<SolidMo
     solids.iter().zip(&scene.solid).map(model).collect()
 }
 
-/// Whether so many particles of fluid fill every cell that fluid can be in.
+/// Whether so many particles of fluid, of these volumes where they differ, fill every cell that fluid can
+/// be in.
 pub fn is_closed<const D: usize>(
     scene: &Scene,
-    solids: &[Solid<D>],
-    lattice: &Lattice<D>,
-    bounds: &Aabb<D>,
+    geometry: &Geometry<D>,
     fluid: usize,
+    volume: Option<&[f64]>,
 ) -> Result<bool, SceneError> {
-    let (domain, place) = searchable(scene, lattice, bounds)?;
+    let Geometry { solids, lattice, domain, .. } = geometry;
+    let (domain, place) = searchable(scene, lattice, domain)?;
     let free = free_cells(solids, lattice, &domain)
         .map_err(|error| lattice_error(scene, place, &error))?;
-    Ok(free.count() <= fluid as u64)
+    Ok(match volume {
+        None => free.count() <= fluid as u64,
+        Some(volume) => {
+            let cells = free.count() as f64 * lattice.spacing().powi(D as i32);
+            cells <= volume.iter().sum::<f64>() * (1.0 + CLOSED)
+        }
+    })
 }
+
+/// Fluid whose particles have volumes of their own fills a space up to this share.
+const CLOSED: f64 = 1e-3;
 
 /// Adds the wall particles, solid by solid.
 pub fn add_walls<const D: usize>(
     scene: &Scene,
-    solids: &[Solid<D>],
+    geometry: &Geometry<D>,
     bodies: &mut [Body<D>],
-    lattice: &Lattice<D>,
     constants: &Constants<D>,
     particles: &mut Particles<D>,
 ) -> Result<(), SceneError> {
-    let bounds = Aabb::new(constants.domain.0, constants.domain.1);
+    let solids = &geometry.solids;
     let support = constants.support_radius;
-    let walls = find_walls(scene, solids, lattice, &bounds, support)?;
+    let walls = match &geometry.spacing {
+        None => find_walls(scene, solids, &geometry.lattice, &geometry.domain, support)?,
+        Some(field) => graded::find_walls(scene, geometry, field)?,
+    };
     for body in &mut *bodies {
-        moving::add_elements(scene, body, lattice, support, 0)?;
+        let (lattice, support) = graded::lattice_of_body(scene, geometry, body, support)?;
+        moving::add_elements(scene, body, &lattice, support, 0)?;
     }
     let moving = bodies.iter().map(|body| body.elements.len()).sum::<usize>();
     let total = particles.len() + walls.positions.len() + moving;
@@ -139,13 +152,29 @@ pub fn find_walls<const D: usize>(
     bounds: &Aabb<D>,
     support: f64,
 ) -> Result<WallElements<D>, SceneError> {
+    find_with(scene, solids, lattice, bounds, |at_rest, domain| {
+        wall_elements(at_rest, lattice, support, domain)
+    })
+}
+
+/// The wall elements that `make` makes of the solids at rest in the domain.
+///
+/// # Errors
+///
+/// When the domain is too large to be searched.
+pub fn find_with<const D: usize>(
+    scene: &Scene,
+    solids: &[Solid<D>],
+    lattice: &Lattice<D>,
+    bounds: &Aabb<D>,
+    make: impl FnOnce(&[Solid<D>], &Domain<D>) -> Result<WallElements<D>, LatticeError>,
+) -> Result<WallElements<D>, SceneError> {
     let at_rest = moving::at_rest(scene, solids);
     if at_rest.is_empty() {
         return Ok(WallElements::default());
     }
     let (domain, place) = searchable(scene, lattice, bounds)?;
-    let mut walls = wall_elements(&at_rest, lattice, support, &domain)
-        .map_err(|error| lattice_error(scene, place, &error))?;
+    let mut walls = make(&at_rest, &domain).map_err(|error| lattice_error(scene, place, &error))?;
     let moves = moving::moves(scene);
     let numbers: Vec<u32> =
         (0..moves.len() as u32).filter(|number| !moves[*number as usize]).collect();

@@ -4,6 +4,7 @@ mod motion;
 mod outputs;
 mod periodic;
 mod reference;
+mod refine;
 mod shapes;
 mod values;
 
@@ -51,6 +52,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
         walls(&values, index, solid)?;
         motion::check(&values, index, solid)?;
     }
+    refine::check(&values)?;
     outputs::probes(&values)?;
     outputs::intervals(&values)?;
     scene.reference.as_ref().map_or(Ok(()), |known| reference::check(&values, known))

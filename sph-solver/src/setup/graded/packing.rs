@@ -1,0 +1,173 @@
+//! Packing: particles move until sums over neighbours are even.
+//!
+//! Source: Colagrossi, Bouscasse, Antuono & Marrone (2012), "Particle packing algorithm for SPH schemes",
+//! Comput. Phys. Commun. 183: particles follow −Σ ∇W V over the fluid and all that surrounds it, which
+//! vanishes where neighbours lie evenly. Here with a spacing that varies from place to place, which a
+//! particle takes on as it moves.
+
+use super::super::{Geometry, overlap};
+use super::seeds::Seeds;
+use crate::scene::{Scene, SceneError};
+use crate::space::{offset, wrapped};
+use sph_geometry::{Aabb, SpacingField, WallElements};
+use sph_kernels::{Kernel, WendlandC2};
+use sph_neighbors::{Grid, LevelList, NeighborList, PairReach};
+
+/// How often particles move.
+const MOVES: usize = 80;
+
+/// A particle moves by this times −s² Σ ∇W V, s its spacing.
+const RATE: f64 = 0.35;
+
+/// The most that it moves at a time, in spacings.
+const FARTHEST: f64 = 0.2;
+
+/// Lists reach this much farther than the support, so that they last some moves.
+const SLACK: f64 = 1.2;
+
+/// Moves between two lists.
+const LIFE: usize = 8;
+
+/// Particles that are packed.
+#[derive(Debug)]
+pub struct Packed<const D: usize> {
+    /// Positions, m.
+    pub position: Vec<[f64; D]>,
+    /// Volumes, m^D.
+    pub volume: Vec<f64>,
+}
+
+/// Packs the seeds that are not fixed, between those that are and the elements of what is no fluid.
+///
+/// # Errors
+///
+/// When the domain is too large for the search of neighbours.
+pub fn packed<const D: usize>(
+    scene: &Scene,
+    geometry: &Geometry<D>,
+    field: &SpacingField<D>,
+    seeds: Seeds<D>,
+    around: &WallElements<D>,
+) -> Result<Packed<D>, SceneError> {
+    let Seeds { mut position, fixed, loose_volume } = seeds;
+    let loose: Vec<u32> = (0..position.len() as u32).filter(|&i| !fixed[i as usize]).collect();
+    let supports = *scene.numerics.support;
+    let mut spacing: Vec<f64> = position.iter().map(|x| field.at(x)).collect();
+    let search = |error: sph_neighbors::GridError| {
+        let kind = crate::scene::ErrorKind::Invalid {
+            what: format!("particles of this spacing cannot be packed: {error}"),
+            help: "give a smaller [domain] or a larger numerics.spacing".into(),
+        };
+        scene.error(scene.numerics.spacing.place, kind)
+    };
+    let domain = &geometry.domain;
+    let periodic = scene.periodic_axes::<D>();
+    let periods: [Option<f64>; D] =
+        std::array::from_fn(|k| periodic[k].then(|| domain.max[k] - domain.min[k]));
+    let reach = SLACK * supports * field.coarsest();
+    let grid = Grid::new(domain.min, 0.5 * reach).and_then(|grid| grid.periodic(periods));
+    let grid = grid.map_err(search)?;
+    let place = Place { geometry, domain, periods };
+    let norm = WendlandC2::norm(D);
+    let gradient = |radius: f64, distance: f64| {
+        norm * radius.powi(-(D as i32) - 2) * WendlandC2::slope(distance / radius)
+    };
+    let elements = Elements::new(&grid, around, supports).map_err(search)?;
+    let (mut near, mut beside) = (NeighborList::default(), NeighborList::default());
+    for turn in 0..MOVES {
+        let targets: Vec<[f64; D]> = loose.iter().map(|&i| position[i as usize]).collect();
+        if turn % LIFE == 0 {
+            let radii: Vec<f64> = spacing.iter().map(|s| SLACK * supports * s).collect();
+            let ids: Vec<u64> = (0..position.len() as u64).collect();
+            let levels = LevelList::build(&grid, &position, &radii, &ids).map_err(search)?;
+            let of_loose: Vec<f64> = loose.iter().map(|&i| radii[i as usize]).collect();
+            let mean = PairReach::Mean;
+            near.rebuild_with_radii(&levels, &targets, &of_loose, |t| loose[t], mean, 1);
+            let target = PairReach::Target;
+            beside.rebuild_with_radii(
+                &elements.levels,
+                &targets,
+                &of_loose,
+                |_| u32::MAX,
+                target,
+                1,
+            );
+        }
+        let step = |t: usize| -> [f64; D] {
+            let (x, own) = (&targets[t], spacing[loose[t] as usize]);
+            let mut sum = [0.0; D];
+            let mut add = |y: &[f64; D], radius: f64, volume: f64| {
+                let r = offset(x, y, &place.periods);
+                let distance = r.iter().map(|c| c * c).sum::<f64>().sqrt();
+                if distance < radius {
+                    let factor = gradient(radius, distance) * volume;
+                    (0..D).for_each(|k| sum[k] += factor * r[k]);
+                }
+            };
+            for &j in near.neighbors(t) {
+                let other = spacing[j as usize];
+                let radius = 0.5 * supports * (own + other);
+                add(&position[j as usize], radius, other.powi(D as i32));
+            }
+            for &w in beside.neighbors(t) {
+                let w = w as usize;
+                add(&around.positions[w], supports * own, around.volumes[w]);
+            }
+            let length = sum.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let factor = RATE * own * own;
+            let factor = factor.min(FARTHEST * own / length.max(1e-300));
+            sum.map(|c| -factor * c)
+        };
+        use rayon::prelude::*;
+        let steps: Vec<[f64; D]> =
+            (0..loose.len()).into_par_iter().with_min_len(256).map(step).collect();
+        for ((&i, x), step) in loose.iter().zip(&targets).zip(steps) {
+            let moved = std::array::from_fn(|k| x[k] + step[k]);
+            let moved = wrapped(moved, &domain.min, &periods);
+            if place.is_fluid(&moved) {
+                position[i as usize] = moved;
+                spacing[i as usize] = field.at(&moved);
+            }
+        }
+    }
+    let mut volume: Vec<f64> = spacing.iter().map(|s| s.powi(D as i32)).collect();
+    // The water that is there, not a little more or less.
+    let packed: f64 = loose.iter().map(|&i| volume[i as usize]).sum();
+    for &i in &loose {
+        volume[i as usize] *= loose_volume / packed;
+    }
+    Ok(Packed { position, volume })
+}
+
+/// Elements of what is no fluid, ready for the search.
+struct Elements<const D: usize> {
+    levels: LevelList<D>,
+}
+
+impl<const D: usize> Elements<D> {
+    fn new(
+        grid: &Grid<D>,
+        around: &WallElements<D>,
+        supports: f64,
+    ) -> Result<Self, sph_neighbors::GridError> {
+        let ids: Vec<u64> = (0..around.positions.len() as u64).collect();
+        let radius = |volume: &f64| supports * volume.powf(1.0 / D as f64);
+        let radii: Vec<f64> = around.volumes.iter().map(radius).collect();
+        Ok(Self { levels: LevelList::build(grid, &around.positions, &radii, &ids)? })
+    }
+}
+
+/// Where fluid may be.
+struct Place<'a, const D: usize> {
+    geometry: &'a Geometry<D>,
+    domain: &'a Aabb<D>,
+    periods: [Option<f64>; D],
+}
+
+impl<const D: usize> Place<'_, D> {
+    fn is_fluid(&self, x: &[f64; D]) -> bool {
+        self.domain.contains(x)
+            && self.geometry.regions.iter().any(|region| region.contains(x))
+            && overlap::is_free(&self.geometry.solids, x)
+    }
+}
