@@ -21,6 +21,8 @@ pub struct FluidColumns<'a, const D: usize> {
     pub lowest_wall_pressure: &'a mut [f64],
     /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
     pub shift: &'a mut [[f64; D]],
+    /// ∇R of each over the largest support radius, 1/m; nothing where all are the same.
+    pub radius_slope: &'a [[f64; D]],
 }
 
 impl<'a, const D: usize> FluidColumns<'a, D> {
@@ -34,6 +36,7 @@ impl<'a, const D: usize> FluidColumns<'a, D> {
             pressure_gradient,
             lowest_wall_pressure,
             shift,
+            radius_slope,
         } = self;
         Block {
             first: 0,
@@ -44,6 +47,7 @@ impl<'a, const D: usize> FluidColumns<'a, D> {
             pressure_gradient,
             lowest_wall_pressure,
             shift,
+            radius_slope,
             rates,
             new,
         }
@@ -69,6 +73,8 @@ pub struct Block<'a, const D: usize, S, R> {
     pub lowest_wall_pressure: &'a mut [f64],
     /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
     pub shift: &'a mut [[f64; D]],
+    /// ∇R of each over the largest support radius, 1/m; nothing where all are the same.
+    pub radius_slope: &'a [[f64; D]],
     /// Results of the flux loop.
     pub rates: &'a mut [R],
     /// Records that the next pass reads.
@@ -110,6 +116,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
         let (gradient, gradient2) = self.pressure_gradient.split_at_mut(n);
         let (lowest, lowest2) = self.lowest_wall_pressure.split_at_mut(n);
         let (shift, shift2) = self.shift.split_at_mut(n.min(self.shift.len()));
+        let (slope, slope2) = self.radius_slope.split_at(n.min(self.radius_slope.len()));
         let (rates, rates2) = self.rates.split_at_mut(n);
         let (new, new2) = self.new.split_at_mut(n);
         (
@@ -122,6 +129,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 pressure_gradient: gradient,
                 lowest_wall_pressure: lowest,
                 shift,
+                radius_slope: slope,
                 rates,
                 new,
             },
@@ -134,6 +142,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 pressure_gradient: gradient2,
                 lowest_wall_pressure: lowest2,
                 shift: shift2,
+                radius_slope: slope2,
                 rates: rates2,
                 new: new2,
             },
@@ -150,6 +159,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             beside: Beside {
                 lowest_pressure: self.lowest_wall_pressure,
                 pressure_gradient: self.pressure_gradient,
+                radius_slope: self.radius_slope,
                 position: self.position,
                 frame: None,
             },
@@ -177,6 +187,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             pressure_gradient: self.pressure_gradient,
             lowest_wall_pressure: self.lowest_wall_pressure,
             shift: self.shift,
+            radius_slope: self.radius_slope,
             rates: self.rates,
             new: self.new,
         }
@@ -217,6 +228,7 @@ mod tests {
             pressure_gradient: &mut [[0.0; 2]; 10],
             lowest_wall_pressure: &mut [0.0; 10],
             shift: &mut [],
+            radius_slope: &[],
             rates: &mut r,
             new: &mut new,
         };

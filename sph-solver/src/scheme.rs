@@ -3,7 +3,8 @@
 use crate::groups::{BoxedSum, fluid_sum, wall_sum};
 use crate::kernel_shape::KernelShape;
 use crate::terms::{
-    Acceleration, Crowding, DensityRate, Deviation, PairTerm, Pressure, VectorSum, WallTerm,
+    Acceleration, Crowding, DensityRate, Deviation, PairTerm, Pressure, Slope, SlopeSum, VectorSum,
+    WallTerm,
 };
 use sph_kernels::{Kernel, Real};
 use std::marker::PhantomData;
@@ -27,6 +28,8 @@ pub struct Scheme<const D: usize, S> {
     pub shifting: Option<BoxedSum<D, S, VectorSum<D>>>,
     /// The same for the walls around it.
     pub wall_shifting: Option<BoxedSum<D, S, VectorSum<D>>>,
+    /// How support radii grow from place to place, if they vary and there are walls.
+    pub radius_slope: Option<BoxedSum<D, S, SlopeSum<D>>>,
 }
 
 impl<const D: usize, S: Real> Scheme<D, S> {
@@ -45,6 +48,7 @@ impl<const D: usize, S: Real> Scheme<D, S> {
                 wall_friction: None,
                 shifting: None,
                 wall_shifting: None,
+                radius_slope: None,
             },
             kernel: PhantomData,
         }
@@ -94,6 +98,13 @@ impl<const D: usize, S: Real, K: Kernel> SchemeBuilder<D, S, K> {
     #[must_use]
     pub fn wall_shifting(mut self, crowding: impl WallTerm<D, Crowding> + 'static) -> Self {
         self.scheme.wall_shifting = Some(wall_sum::<D, S, Crowding, K, _>(crowding));
+        self
+    }
+
+    /// Support radii that vary beside walls.
+    #[must_use]
+    pub fn radius_slope(mut self, slope: impl PairTerm<D, Slope> + 'static) -> Self {
+        self.scheme.radius_slope = Some(fluid_sum::<D, S, Slope, K, _>(slope));
         self
     }
 

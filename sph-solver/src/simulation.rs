@@ -372,6 +372,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         let (comm, team, model) = (&self.comm, &self.team, &self.model);
         let gone = self.rank.rebuild(comm, team, model, &encoder, division, &self.bodies)?;
         self.rank.make_room(self.scheme.shifting.is_some());
+        self.rank.find_slopes(&self.scheme, &self.scale);
         self.at_rebuild = (self.counters.steps, self.exposed);
         Ok(gone)
     }

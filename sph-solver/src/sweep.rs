@@ -11,8 +11,8 @@ use crate::bodies::Frame;
 use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
 use crate::space::{Metric, PairScale};
 use crate::terms::{
-    BesideWall, Pair, PairTerm, Quantity, Source, Stretch, Target, WallPair, WallTerm, difference,
-    dot, lanes,
+    BesideWall, Pair, PairTerm, Quantity, Source, Stretch, Target, WallPair, WallStretch, WallTerm,
+    difference, dot, lanes,
 };
 use sph_kernels::{Kernel, Lanes, Real, Vectorized};
 use sph_neighbors::{CLUSTER, ClusterList};
@@ -63,6 +63,8 @@ pub struct Beside<'a, const D: usize> {
     pub lowest_pressure: &'a [f64],
     /// ∇p/ρ at each target, m/s².
     pub pressure_gradient: &'a [[f64; D]],
+    /// ∇R of each target over the largest support radius, 1/m; nothing where all are the same.
+    pub radius_slope: &'a [[f64; D]],
     /// Position of each target, m.
     pub position: &'a [[f64; D]],
     /// How the wall moves; none for a wall at rest.
@@ -127,8 +129,8 @@ where
             let (mut q, mut weight, mut stretch) =
                 (distance * to_q, L::splat(record[WEIGHT]), None);
             if M::GRADED {
-                let own = Stretch::of(half + L::splat(halves[j as usize]));
-                (q, weight) = (q * own.inverse, weight * own.of_gradients::<D>());
+                let own = Stretch::of(half, L::splat(halves[j as usize]));
+                (q, weight) = (q * own.inverse, weight * of_gradients::<D, L>(own.inverse));
                 stretch = Some(own);
             }
             let weight = K::slope_shape(q) * weight;
@@ -173,7 +175,8 @@ where
         let to_q: L = lanes(scale.unit / scale.support_radius);
         let Self { records, list, term, beside, halves: (of_targets, halves), .. } = *self;
         let half = if M::GRADED { of_lanes(of_targets, &own) } else { L::zero() };
-        let Beside { lowest_pressure, pressure_gradient, position: places, frame } = beside;
+        let Beside { lowest_pressure, pressure_gradient, radius_slope, position: places, frame } =
+            beside;
         let last = own.end - 1;
         let of_own = |f: &dyn Fn(usize) -> f64| -> L {
             let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f((own.start + l).min(last))));
@@ -194,6 +197,12 @@ where
                 from_fn(|k| target.velocity[k] - of_own(&|i| walls[i - own.start][k]));
         }
         let target = &target;
+        let mut lean = [L::zero(); D];
+        if M::GRADED {
+            // −½ ∇R/R, with the half of R.
+            let per_radius = lanes::<L>(-0.25).div(half);
+            lean = from_fn(|k| of_own(&|i| radius_slope[i][k]) * per_radius);
+        }
         let mut total = T::zero();
         for &j in list.sources(cluster) {
             let record = &records[j as usize];
@@ -206,9 +215,9 @@ where
                 (distance * to_q, L::splat(record[WEIGHT]), None);
             if M::GRADED {
                 let half = half.max(L::splat(halves[j as usize]));
-                let own = Stretch::of(half + half);
-                (q, weight) = (q * own.inverse, weight * own.of_gradients::<D>());
-                stretch = Some(own);
+                let Stretch { ratio, inverse, .. } = Stretch::of(half, half);
+                (q, weight) = (q * inverse, weight * of_gradients::<D, L>(inverse));
+                stretch = Some(WallStretch { ratio, inverse, lean });
             }
             let weight = K::slope_shape(q) * weight;
             let depth = L::splat(record[QUANTITY]);
@@ -228,21 +237,22 @@ fn of_lanes<L: Lanes>(values: &[L::Scalar], own: &Range<usize>) -> L {
 }
 
 impl<L: Lanes> Stretch<L> {
-    /// Of a pair whose radius is this much of the largest.
+    /// Of a target and a source of which half the radii are this much of the largest.
     #[inline(always)]
-    fn of(ratio: L) -> Self {
-        Self { ratio, inverse: lanes::<L>(1.0).div(ratio) }
+    fn of(target: L, source: L) -> Self {
+        let (ratio, half) = (target + source, source - target);
+        Self { ratio, inverse: lanes::<L>(1.0).div(ratio), difference: half + half }
     }
+}
 
-    /// What ∇W r^-1 of a pair is times that of the largest radius: (R/R_ij)^(D+2).
-    #[inline(always)]
-    fn of_gradients<const D: usize>(&self) -> L {
-        let square = self.inverse * self.inverse;
-        match D {
-            1 => square * self.inverse,
-            2 => square * square,
-            _ => square * square * self.inverse,
-        }
+/// What ∇W r^-1 of a pair is times that of the largest radius: (R/R_ij)^(D+2), from R/R_ij.
+#[inline(always)]
+fn of_gradients<const D: usize, L: Lanes>(inverse: L) -> L {
+    let square = inverse * inverse;
+    match D {
+        1 => square * inverse,
+        2 => square * square,
+        _ => square * square * inverse,
     }
 }
 

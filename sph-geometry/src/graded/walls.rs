@@ -24,7 +24,9 @@ pub fn graded_wall_elements<const D: usize>(
     for (level, lattice) in tree.lattices().iter().enumerate() {
         let edge = lattice.spacing();
         // Cells of a level hold what particles of up to twice its spacing see.
-        let support = supports * (2.0 * edge).min(tree.field().coarsest());
+        let seen = supports * (2.0 * edge).min(tree.field().coarsest());
+        // A cell is as large as what sees the middle of the one that it is a part of.
+        let support = seen + if level > 0 { edge * (D as f64).sqrt() } else { 0.0 };
         let mut part = *domain;
         if level > 0 {
             // Cells of this level, the walls that particles in them see, and what is around these.

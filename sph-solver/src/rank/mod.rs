@@ -6,12 +6,14 @@ mod traveller;
 mod walls;
 
 use crate::block::FluidColumns;
+use crate::groups::GroupView;
 use crate::passes::{DENSEST, Surroundings};
 use crate::records::{Encoder, Record, record};
+use crate::scheme::Scheme;
 use crate::search::Sorted;
 use crate::space::PairScale;
 use crate::state::State;
-use crate::terms::{Acceleration, DensityRate};
+use crate::terms::{Acceleration, DensityRate, SlopeSum};
 use crate::walls::{WallElements, WallSet};
 use bytemuck::Pod;
 use sph_decomp::{Askew, Halo, HaloPlan, Orb, Parts};
@@ -41,6 +43,9 @@ pub struct Rank<const D: usize, S: Real> {
     lowest_wall_pressure: Vec<f64>,
     /// Velocity by which each owned fluid particle is shifted, m/s; nothing if none is.
     shift: Vec<[f64; D]>,
+    /// ∇R of each owned fluid particle over the largest support radius, 1/m; nothing where all are the
+    /// same.
+    radius_slope: Vec<[f64; D]>,
     /// Results of the force sweep.
     pub(crate) force_rate: Vec<Acceleration<D>>,
     /// Results of the density sweep.
@@ -62,6 +67,12 @@ pub struct Rank<const D: usize, S: Real> {
     force_halo: Halo<[S; 6]>,
     partition: Option<Askew<Orb<D>>>,
 }
+
+/// Steeper slopes of support radii are those of single particles among others of another size.
+const STEEPEST: f64 = 0.4;
+
+/// A support that is filled less than this tells nothing of slopes.
+const LEAST_FILLED: f64 = 0.25;
 
 /// The record of particle `i`, with its density deviation.
 fn record_of<const D: usize, S: Real>(
@@ -122,6 +133,31 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.shift.resize(if shifts { self.fluid.owned() } else { 0 }, [0.0; D]);
     }
 
+    /// Finds how support radii grow from place to place, if a scheme asks for it. Lists last no longer
+    /// than the answer holds.
+    pub fn find_slopes(&mut self, scheme: &Scheme<D, S>, scale: &PairScale<D>) {
+        let (Some(sum), Some(halves)) = (&scheme.radius_slope, &self.halves) else { return };
+        let owned = self.fluid.owned();
+        let mut sums = vec![SlopeSum::default(); owned];
+        let view = GroupView {
+            targets: &self.deviation,
+            sources: &self.deviation,
+            list: &self.near_fluid,
+            scale,
+            halves: Some((halves, halves)),
+            beside: None,
+        };
+        sum.sum(view, 0, &self.state.density, &mut sums);
+        let most = STEEPEST / scale.support_radius;
+        let slope = |SlopeSum { sum, filled }: SlopeSum<D>| {
+            let slope = sum.map(|sum| sum / filled.max(LEAST_FILLED));
+            let length = slope.iter().map(|c| c * c).sum::<f64>().sqrt();
+            if length > most { slope.map(|c| c * (most / length)) } else { slope }
+        };
+        self.radius_slope.clear();
+        self.radius_slope.extend(sums.into_iter().map(slope));
+    }
+
     /// Pairs of the owned fluid particles with fluid and walls.
     pub fn pairs(&self) -> u64 {
         self.near_fluid.pairs() + self.walls.iter().map(|wall| wall.near.pairs()).sum::<u64>()
@@ -144,6 +180,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
                 pressure_gradient: &mut self.state.pressure_gradient[..n],
                 lowest_wall_pressure: &mut self.lowest_wall_pressure,
                 shift: &mut self.shift,
+                radius_slope: &self.radius_slope,
             },
             deviation: &mut self.deviation,
             pressure: &mut self.pressure,

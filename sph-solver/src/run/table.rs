@@ -14,8 +14,8 @@ use crate::scheme::Scheme;
 use crate::state::State;
 use crate::team::Team;
 use crate::terms::{
-    ArtificialViscosity, Continuity, DeltaContinuity, LaminarViscosity, NoSlip, Shifting,
-    SymmetricPressure, WallContinuity, WallPressure,
+    ArtificialViscosity, Continuity, DeltaContinuity, LaminarViscosity, NoSlip, RadiusSlope,
+    Shifting, SymmetricPressure, WallContinuity, WallPressure,
 };
 use crate::walls::WallElements;
 use bytemuck::Pod;
@@ -138,6 +138,10 @@ fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) 
     if !features.walls {
         return builder.build();
     }
+    let builder = match model.grading {
+        Some(_) => builder.radius_slope(RadiusSlope),
+        None => builder,
+    };
     let wall = WallPressure { sound_speed };
     let builder = builder.walls(WallContinuity, wall);
     let builder = if features.shifting { builder.wall_shifting(shifting) } else { builder };

@@ -17,6 +17,7 @@ mod continuity;
 mod delta_continuity;
 mod pressure;
 mod quantity;
+mod radius_slope;
 mod shifting;
 mod viscosity;
 mod wall_continuity;
@@ -29,8 +30,10 @@ pub use continuity::Continuity;
 pub use delta_continuity::DeltaContinuity;
 pub use pressure::SymmetricPressure;
 pub use quantity::{
-    Acceleration, Crowding, DensityRate, Deviation, Pressure, Quantity, Rate, VectorSum,
+    Acceleration, Crowding, DensityRate, Deviation, Pressure, Quantity, Rate, Slope, SlopeSum,
+    VectorSum,
 };
+pub use radius_slope::RadiusSlope;
 pub use shifting::{Shifting, shift};
 pub use viscosity::LaminarViscosity;
 pub use wall_continuity::WallContinuity;
@@ -89,6 +92,19 @@ pub struct Stretch<L> {
     pub ratio: L,
     /// The largest radius over R_ij.
     pub inverse: L,
+    /// R_j − R_i over the largest radius.
+    pub difference: L,
+}
+
+/// The support radius of a target beside a wall where radii vary from particle to particle.
+#[derive(Debug, Clone, Copy)]
+pub struct WallStretch<const D: usize, L> {
+    /// R_iw over the largest radius.
+    pub ratio: L,
+    /// The largest radius over R_iw.
+    pub inverse: L,
+    /// −½ ∇R_i/R_i, 1/m: how far the push of a wall leans per metre of height, see [`RadiusSlope`].
+    pub lean: [L; D],
 }
 
 impl<const D: usize, L: Lanes> Pair<D, L> {
@@ -128,8 +144,8 @@ pub struct WallPair<const D: usize, L> {
     pub unit: L,
     /// Units per metre.
     pub per_unit: L,
-    /// As in [`Pair`]: a wall has the support radius of whoever looks at it.
-    pub stretch: Option<Stretch<L>>,
+    /// How the support radius of the target differs from the largest; none where all are the same.
+    pub stretch: Option<WallStretch<D, L>>,
 }
 
 impl<const D: usize, L: Lanes> WallPair<D, L> {
@@ -311,8 +327,8 @@ pub(crate) mod scalar {
         slope: f64,
     ) -> (Target<2, f64>, WallPair<2, f64>) {
         let (i, _, pair) = pair(r_iw, (velocity, [0.0; 2]), (quantity, 0.0), volume, slope);
-        let Pair { offset, distance2, weight, unit, per_unit, stretch, .. } = pair;
-        (i, WallPair { offset, distance2, normal, depth, weight, unit, per_unit, stretch })
+        let Pair { offset, distance2, weight, unit, per_unit, .. } = pair;
+        (i, WallPair { offset, distance2, normal, depth, weight, unit, per_unit, stretch: None })
     }
 
     /// What a wall term adds to the rate of the target, where ∇p/ρ is `gradient`.

@@ -59,6 +59,38 @@ pub struct Pressure;
 #[derive(Debug, Clone, Copy)]
 pub struct Crowding;
 
+/// Records carry anything: only places and support radii count. A term gives c, and the sweep returns
+/// Σ_j c ∇W_ij V_j with the share of the support that the neighbours fill.
+#[derive(Debug, Clone, Copy)]
+pub struct Slope;
+
+/// A sum of gradients and the share of the support that it is over.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlopeSum<const D: usize> {
+    /// Σ c ∇W V, 1/m.
+    pub sum: [f64; D],
+    /// −Σ r_ij·∇W_ij V_j/D.
+    pub filled: f64,
+}
+
+impl<const D: usize> Rate for SlopeSum<D> {}
+
+impl<const D: usize> Default for SlopeSum<D> {
+    fn default() -> Self {
+        Self { sum: [0.0; D], filled: 0.0 }
+    }
+}
+
+impl<const D: usize> AddAssign for SlopeSum<D> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        for (sum, part) in self.sum.iter_mut().zip(other.sum) {
+            *sum += part;
+        }
+        self.filled += other.filled;
+    }
+}
+
 /// A sum of gradients, 1/m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VectorSum<const D: usize>(pub [f64; D]);
@@ -208,6 +240,32 @@ impl Quantity for Crowding {
         let sum = sum.map(numbers);
         for (l, rate) in rates.iter_mut().enumerate() {
             *rate = VectorSum(std::array::from_fn(|k| sum[k][l]));
+        }
+    }
+}
+
+impl Quantity for Slope {
+    type Rate<const D: usize> = SlopeSum<D>;
+    /// Σ c ∇W V, and the share that is filled.
+    type Sum<const D: usize, L: Lanes> = ([L; D], L);
+
+    #[inline(always)]
+    fn zero<const D: usize, L: Lanes>() -> ([L; D], L) {
+        ([L::zero(); D], L::zero())
+    }
+
+    #[inline(always)]
+    fn add<const D: usize, L: Lanes>(sum: &mut ([L; D], L), coefficient: L, pair: &Pair<D, L>) {
+        Pressure::add(&mut sum.0, coefficient, pair);
+        let metres = pair.unit * lanes(-1.0 / D as f64);
+        sum.1 = (pair.distance2 * metres).mul_add(pair.weight, sum.1);
+    }
+
+    #[inline(always)]
+    fn rates<const D: usize, L: Lanes>(sum: &([L; D], L), _: &[f64], rates: &mut [SlopeSum<D>]) {
+        let (sum, filled) = (sum.0.map(numbers), numbers(sum.1));
+        for (l, rate) in rates.iter_mut().enumerate() {
+            *rate = SlopeSum { sum: std::array::from_fn(|k| sum[k][l]), filled: filled[l] };
         }
     }
 }

@@ -1,6 +1,4 @@
-use super::{
-    BesideWall, Crowding, Pair, PairTerm, Source, Stretch, Target, WallPair, WallTerm, lanes,
-};
+use super::{BesideWall, Crowding, Pair, PairTerm, Source, Target, WallPair, WallTerm, lanes};
 use sph_kernels::{Kernel, Lanes};
 use std::marker::PhantomData;
 
@@ -26,9 +24,9 @@ impl<K: Kernel> Shifting<K> {
     }
 
     #[inline(always)]
-    fn bracket<L: Lanes>(&self, distance2: L, unit: L, stretch: Option<Stretch<L>>) -> L {
+    fn bracket<L: Lanes>(&self, distance2: L, unit: L, inverse: Option<L>) -> L {
         let q = distance2.sqrt() * (unit * lanes(1.0 / self.support_radius));
-        let q = stretch.map_or(q, |stretch| q * stretch.inverse);
+        let q = inverse.map_or(q, |inverse| q * inverse);
         let ratio = K::w(q) * lanes(self.inverse_at_spacing);
         let square = ratio * ratio;
         (square * square).mul_add(lanes(0.2), lanes(1.0))
@@ -38,7 +36,7 @@ impl<K: Kernel> Shifting<K> {
 impl<const D: usize, K: Kernel> PairTerm<D, Crowding> for Shifting<K> {
     #[inline(always)]
     fn coefficient<L: Lanes>(&self, _: &Target<D, L>, _: &Source<D, L>, pair: &Pair<D, L>) -> L {
-        self.bracket(pair.distance2, pair.unit, pair.stretch)
+        self.bracket(pair.distance2, pair.unit, pair.stretch.map(|stretch| stretch.inverse))
     }
 }
 
@@ -58,7 +56,9 @@ impl<const D: usize, K: Kernel> WallTerm<D, Crowding> for Shifting<K> {
         pair: &WallPair<D, L>,
         sum: &mut [L; D],
     ) {
-        let factor = self.bracket(pair.distance2, pair.unit, pair.stretch) * pair.weight;
+        let factor =
+            self.bracket(pair.distance2, pair.unit, pair.stretch.map(|stretch| stretch.inverse))
+                * pair.weight;
         for (sum, offset) in sum.iter_mut().zip(pair.offset) {
             *sum = factor.mul_add(offset, *sum);
         }

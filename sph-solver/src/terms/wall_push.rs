@@ -17,6 +17,8 @@ pub struct WallPush<const D: usize, L> {
     across: [L; D],
     normal: [L; D],
     weight: L,
+    /// What the push leans by where support radii vary.
+    lean: [L; D],
 }
 
 /// |n̄|² from which on a wall counts as a plane.
@@ -29,7 +31,7 @@ impl<const D: usize, L: Lanes> WallPush<D, L> {
     #[inline(always)]
     pub fn zero() -> Self {
         let zero = [L::zero(); D];
-        Self { push: zero, across: zero, normal: zero, weight: L::zero() }
+        Self { push: zero, across: zero, normal: zero, weight: L::zero(), lean: zero }
     }
 
     /// Adds an element whose push has the coefficient c = `even` + `uneven`, `even` that part of it
@@ -45,6 +47,16 @@ impl<const D: usize, L: Lanes> WallPush<D, L> {
             self.normal[k] = pair.weight.mul_add(pair.normal[k], self.normal[k]);
         }
         self.weight += pair.weight;
+        if let Some(stretch) = &pair.stretch {
+            // Where support radii grow along the wall, see `RadiusSlope`.
+            let above = (height * pair.unit - pair.depth).max(L::zero());
+            let size = all * height * above;
+            let along = dot(&stretch.lean, &pair.normal);
+            for k in 0..D {
+                let lean = stretch.lean[k] - along * pair.normal[k];
+                self.lean[k] = size.mul_add(lean, self.lean[k]);
+            }
+        }
     }
 
     /// Adds what an element does along its own normal alone, with the coefficient `along`: a damping of the
@@ -67,7 +79,7 @@ impl<const D: usize, L: Lanes> WallPush<D, L> {
         let plane = ((dot(&normal, &normal) - lanes(BENT)) * lanes(1.0 / (PLANE - BENT)))
             .max(L::zero())
             .min(lanes(1.0));
-        std::array::from_fn(|k| self.push[k] - plane * self.across[k])
+        std::array::from_fn(|k| self.push[k] - plane * self.across[k] + self.lean[k])
     }
 }
 

@@ -14,10 +14,14 @@ use sph_kernels::{Kernel, WendlandC2};
 use sph_neighbors::{Grid, LevelList, NeighborList, PairReach};
 
 /// How often particles move.
-const MOVES: usize = 80;
+const MOVES: usize = 160;
 
-/// A particle moves by this times −s² Σ ∇W V, s its spacing.
-const RATE: f64 = 0.35;
+/// A particle moves by this times −s² Σ ∇W V, s its spacing …
+const RATE: f64 = 0.3;
+
+/// … and by this share of its last move again (the heavy ball of Polyak 1964), which halves what is left
+/// after so many moves, and halves it again.
+const MEMORY: f64 = 0.85;
 
 /// The most that it moves at a time, in spacings.
 const FARTHEST: f64 = 0.2;
@@ -74,6 +78,7 @@ pub fn packed<const D: usize>(
     };
     let elements = Elements::new(&grid, around, supports).map_err(search)?;
     let (mut near, mut beside) = (NeighborList::default(), NeighborList::default());
+    let mut moves = vec![[0.0; D]; loose.len()];
     for turn in 0..MOVES {
         let targets: Vec<[f64; D]> = loose.iter().map(|&i| position[i as usize]).collect();
         if turn % LIFE == 0 {
@@ -109,24 +114,45 @@ pub fn packed<const D: usize>(
                 let radius = 0.5 * supports * (own + other);
                 add(&position[j as usize], radius, other.powi(D as i32));
             }
-            for &w in beside.neighbors(t) {
-                let w = w as usize;
-                add(&around.positions[w], supports * own, around.volumes[w]);
+            let walls = beside.neighbors(t);
+            let slope = if walls.is_empty() { [0.0; D] } else { slope(field, x, own) };
+            for &w in walls {
+                let (w, radius) = (w as usize, supports * own);
+                let r = offset(x, &around.positions[w], &place.periods);
+                let distance = r.iter().map(|c| c * c).sum::<f64>().sqrt();
+                if distance >= radius {
+                    continue;
+                }
+                let factor = gradient(radius, distance) * around.volumes[w];
+                let normal = &around.normals[w];
+                let height: f64 = (0..D).map(|k| r[k] * normal[k]).sum();
+                // A wall leans as it does in a run: see the term `RadiusSlope`.
+                let above = (height - around.depths[w]).max(0.0);
+                let lean = -0.5 * factor * height * above / own;
+                let along: f64 = (0..D).map(|k| slope[k] * normal[k]).sum();
+                for k in 0..D {
+                    sum[k] += factor * r[k] + lean * (slope[k] - along * normal[k]);
+                }
             }
-            let length = sum.iter().map(|c| c * c).sum::<f64>().sqrt();
             let factor = RATE * own * own;
-            let factor = factor.min(FARTHEST * own / length.max(1e-300));
-            sum.map(|c| -factor * c)
+            let step: [f64; D] = std::array::from_fn(|k| MEMORY * moves[t][k] - factor * sum[k]);
+            let length = step.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let most = FARTHEST * own;
+            if length > most { step.map(|c| c * (most / length)) } else { step }
         };
         use rayon::prelude::*;
         let steps: Vec<[f64; D]> =
             (0..loose.len()).into_par_iter().with_min_len(256).map(step).collect();
-        for ((&i, x), step) in loose.iter().zip(&targets).zip(steps) {
+        for (t, (&i, x)) in loose.iter().zip(&targets).enumerate() {
+            let step = steps[t];
             let moved = std::array::from_fn(|k| x[k] + step[k]);
             let moved = wrapped(moved, &domain.min, &periods);
             if place.is_fluid(&moved) {
                 position[i as usize] = moved;
                 spacing[i as usize] = field.at(&moved);
+                moves[t] = step;
+            } else {
+                moves[t] = [0.0; D];
             }
         }
     }
@@ -137,6 +163,19 @@ pub fn packed<const D: usize>(
         volume[i as usize] *= loose_volume / packed;
     }
     Ok(Packed { position, volume })
+}
+
+/// The slope of the spacing at a place where it is `spacing` (m).
+fn slope<const D: usize>(field: &SpacingField<D>, x: &[f64; D], spacing: f64) -> [f64; D] {
+    let step = 0.5 * spacing;
+    std::array::from_fn(|k| {
+        let at = |way: f64| {
+            let mut y = *x;
+            y[k] += way * step;
+            field.at(&y)
+        };
+        (at(1.0) - at(-1.0)) / (2.0 * step)
+    })
 }
 
 /// Elements of what is no fluid, ready for the search.
