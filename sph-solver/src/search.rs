@@ -9,6 +9,10 @@ use sph_neighbors::{CellList, ClusterList, Clusters, Grid, LevelList, PairReach}
 /// from a half to one.
 const CELL: f64 = 0.67;
 
+/// A wall has at least so much of the support radius that fluid of its size would have. Not all of it:
+/// elements are made a little larger than the particles beside them in places, and these shall not notice.
+const OF_WALLS: f64 = 0.75;
+
 /// How neighbours are searched in a run.
 #[derive(Debug, Clone)]
 pub struct Search<'a, const D: usize> {
@@ -47,7 +51,7 @@ impl<'a, const D: usize> Search<'a, D> {
         let density = self.model.equation_of_state.density0();
         let grading = self.model.grading.into_iter();
         grading.flat_map(move |grading| {
-            volumes.iter().map(move |volume| 0.5 * grading.ratio::<D>(density * volume))
+            volumes.iter().map(move |volume| 0.5 * OF_WALLS * grading.ratio::<D>(density * volume))
         })
     }
 

@@ -19,18 +19,35 @@ pub struct Refinement<const D: usize> {
 impl<const D: usize> Refinement<D> {
     /// The spacing that this refinement asks for, without end, at a distance (m) from the target.
     fn at_distance(&self, distance: f64) -> f64 {
-        self.spacing + (self.growth - 1.0) * (distance - self.within).max(0.0)
+        let (beyond, bend) = ((distance - self.within).max(0.0), BEND * self.spacing);
+        let run = if beyond < bend { 0.5 * beyond * beyond / bend } else { beyond - 0.5 * bend };
+        self.spacing + (self.growth - 1.0) * run
     }
 
-    /// Distance from the target (m) at which it asks for a spacing.
+    /// Distance from the target (m) beyond which it asks for more than a spacing.
     fn distance_of(&self, spacing: f64) -> f64 {
-        self.within + ((spacing - self.spacing) / (self.growth - 1.0)).max(0.0)
+        let run = (spacing - self.spacing).max(0.0) / (self.growth - 1.0);
+        self.within + run + 0.5 * BEND * self.spacing
     }
+}
+
+/// Distance over which spacings begin to grow, in spacings. The sums of particles beside a wall take the
+/// growth for constant within their support.
+const BEND: f64 = 8.0;
+
+/// Share of the coarsest spacing in which growth ends before and after it would be reached.
+const ROUND: f64 = 0.15;
+
+/// The smaller of a spacing and the coarsest, without a kink.
+fn rounded(spacing: f64, coarsest: f64) -> f64 {
+    let margin = ROUND * coarsest;
+    let over = (spacing - coarsest + margin).clamp(0.0, 2.0 * margin);
+    (spacing - over * over / (4.0 * margin)).min(coarsest)
 }
 
 /// The spacing at every place: the smallest that any refinement asks for, and no more than the coarsest.
 /// It grows linearly with the distance from what is refined, so that neighbours differ by a constant
-/// factor.
+/// factor, and begins and ends to grow little by little.
 #[derive(Debug, Clone)]
 pub struct SpacingField<const D: usize> {
     coarsest: f64,
@@ -62,7 +79,7 @@ impl<const D: usize> SpacingField<D> {
             self.for_each_image(x, |image| {
                 // Nearer than it seems is no surprise: distances of combined shapes are bounds.
                 let distance = one.target.signed_distance(&image).max(0.0);
-                spacing = spacing.min(one.at_distance(distance));
+                spacing = spacing.min(rounded(one.at_distance(distance), self.coarsest));
             });
         }
         spacing
@@ -76,7 +93,8 @@ impl<const D: usize> SpacingField<D> {
         for one in &self.refinements {
             self.for_each_image(&middle, |image| {
                 let distance = one.target.signed_distance(&image) - half.sqrt();
-                spacing = spacing.min(one.at_distance(distance.max(0.0)));
+                let distance = distance.max(0.0);
+                spacing = spacing.min(rounded(one.at_distance(distance), self.coarsest));
             });
         }
         spacing
@@ -86,8 +104,11 @@ impl<const D: usize> SpacingField<D> {
     /// (m); empty when there is none.
     pub fn bounds_of(&self, spacing: f64) -> Aabb<D> {
         let mut bounds = Aabb::EMPTY;
+        // Where growth ends, a spacing is reached later.
+        let rounding = spacing > (1.0 - ROUND) * self.coarsest;
+        let asked = if rounding { (1.0 + ROUND) * self.coarsest } else { spacing };
         for one in self.refinements.iter().filter(|one| one.spacing < spacing) {
-            let around = one.target.bounding_box().inflated(one.distance_of(spacing));
+            let around = one.target.bounding_box().inflated(one.distance_of(asked));
             bounds = bounds.union(&around);
         }
         for k in (0..D).filter(|&k| self.periods[k].is_some()) {
@@ -120,19 +141,38 @@ mod tests {
     fn it_grows_from_the_finest_to_the_coarsest() {
         let field = field([None; 2]);
         assert_eq!((field.finest(), field.coarsest()), (0.01, 0.04));
-        for (x, spacing) in [(0.2, 0.01), (0.6, 0.01), (0.8, 0.02), (1.0, 0.03), (3.0, 0.04)] {
+        for (x, spacing) in [(0.2, 0.01), (0.6, 0.01), (0.84, 0.02), (1.04, 0.03), (3.0, 0.04)] {
             assert!((field.at(&[x, 0.0]) - spacing).abs() < 1e-15, "{x}");
         }
         // The next particle is 5 % larger.
-        let (here, there) = (field.at(&[0.8, 0.0]), field.at(&[0.82, 0.0]));
+        let (here, there) = (field.at(&[0.84, 0.0]), field.at(&[0.86, 0.0]));
         assert!((there / here - 1.05).abs() < 1e-12);
+    }
+
+    #[test]
+    fn it_has_no_kinks() {
+        let field = field([None; 2]);
+        let step = 1e-4;
+        let slope = |x: f64| (field.at(&[x + step, 0.0]) - field.at(&[x, 0.0])) / step;
+        let (mut before, mut most) = (slope(0.5), 0.0_f64);
+        for n in 0..15_000 {
+            let now = slope(0.5 + f64::from(n) * step);
+            assert!((now - before).abs() < 1e-3, "{n}: {before} {now}");
+            (before, most) = (now, most.max(now));
+        }
+        assert!((most - 0.05).abs() < 1e-9 && before.abs() < 1e-9, "{most} {before}");
     }
 
     #[test]
     fn boxes_hold_what_is_finer() {
         let field = field([None, Some(10.0)]);
-        let bounds = field.bounds_of(0.02);
-        assert!((bounds.max[0] - 0.8).abs() < 1e-12 && bounds.max[1] == f64::INFINITY);
+        for spacing in [0.015, 0.02, 0.035, 0.04] {
+            let bounds = field.bounds_of(spacing);
+            let inside = (0..4000).map(|n| f64::from(n) * 1e-3);
+            let last = inside.filter(|x| field.at(&[*x, 0.0]) < spacing).fold(0.0, f64::max);
+            assert!(bounds.max[0] >= last && bounds.max[0] < last + 0.4, "{spacing} {last}");
+            assert_eq!(bounds.max[1], f64::INFINITY);
+        }
         assert!(field.bounds_of(0.005).min[0] > field.bounds_of(0.005).max[0]);
         assert_eq!(field.least_in(&Aabb::new([2.0, 2.0], [3.0, 3.0])), 0.04);
         assert_eq!(field.least_in(&Aabb::new([0.5, 0.0], [1.5, 1.0])), 0.01);

@@ -71,9 +71,6 @@ pub struct Rank<const D: usize, S: Real> {
 /// Steeper slopes of support radii are those of single particles among others of another size.
 const STEEPEST: f64 = 0.4;
 
-/// A support that is filled less than this tells nothing of slopes.
-const LEAST_FILLED: f64 = 0.25;
-
 /// The record of particle `i`, with its density deviation.
 fn record_of<const D: usize, S: Real>(
     encoder: &Encoder<D, S>,
@@ -149,8 +146,8 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         };
         sum.sum(view, 0, &self.state.density, &mut sums);
         let most = STEEPEST / scale.support_radius;
-        let slope = |SlopeSum { sum, filled }: SlopeSum<D>| {
-            let slope = sum.map(|sum| sum / filled.max(LEAST_FILLED));
+        let slope = |sum: SlopeSum<D>| {
+            let slope = sum.gradient().unwrap_or([0.0; D]);
             let length = slope.iter().map(|c| c * c).sum::<f64>().sqrt();
             if length > most { slope.map(|c| c * (most / length)) } else { slope }
         };

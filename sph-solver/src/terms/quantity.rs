@@ -60,34 +60,66 @@ pub struct Pressure;
 pub struct Crowding;
 
 /// Records carry anything: only places and support radii count. A term gives c, and the sweep returns
-/// Σ_j c ∇W_ij V_j with the share of the support that the neighbours fill.
+/// Σ_j c ∇W_ij V_j with what it takes to make a gradient of it.
 #[derive(Debug, Clone, Copy)]
 pub struct Slope;
 
-/// A sum of gradients and the share of the support that it is over.
+/// A sum of gradients and the moments of the neighbours that it is over.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlopeSum<const D: usize> {
     /// Σ c ∇W V, 1/m.
     pub sum: [f64; D],
-    /// −Σ r_ij·∇W_ij V_j/D.
-    pub filled: f64,
+    /// Σ (x_j − x_i) ⊗ ∇W_ij V_j: 1 inside of the fluid.
+    pub moments: [[f64; D]; D],
 }
+
+impl<const D: usize> SlopeSum<D> {
+    /// The gradient, exact for fields that are linear; none where too few neighbours lie around.
+    ///
+    /// Source: Randles & Libersky (1996), Comput. Methods Appl. Mech. Eng. 139, eq. 27.
+    pub fn gradient(&self) -> Option<[f64; D]> {
+        // Gauss's elimination with the largest pivot of each column.
+        let (mut m, mut g) = (self.moments, self.sum);
+        for k in 0..D {
+            let size = |row: &usize| m[*row][k].abs();
+            let pivot = (k..D).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+            m.swap(k, pivot);
+            g.swap(k, pivot);
+            if m[k][k].abs() < SINGULAR {
+                return None;
+            }
+            for row in k + 1..D {
+                let factor = m[row][k] / m[k][k];
+                (k..D).for_each(|l| m[row][l] -= factor * m[k][l]);
+                g[row] -= factor * g[k];
+            }
+        }
+        for k in (0..D).rev() {
+            let known: f64 = (k + 1..D).map(|l| m[k][l] * g[l]).sum();
+            g[k] = (g[k] - known) / m[k][k];
+        }
+        Some(g)
+    }
+}
+
+/// Moments smaller than this are of neighbours that hardly spread along some direction.
+const SINGULAR: f64 = 0.1;
 
 impl<const D: usize> Rate for SlopeSum<D> {}
 
 impl<const D: usize> Default for SlopeSum<D> {
     fn default() -> Self {
-        Self { sum: [0.0; D], filled: 0.0 }
+        Self { sum: [0.0; D], moments: [[0.0; D]; D] }
     }
 }
 
 impl<const D: usize> AddAssign for SlopeSum<D> {
     #[inline]
     fn add_assign(&mut self, other: Self) {
-        for (sum, part) in self.sum.iter_mut().zip(other.sum) {
-            *sum += part;
+        for k in 0..D {
+            self.sum[k] += other.sum[k];
+            (0..D).for_each(|l| self.moments[k][l] += other.moments[k][l]);
         }
-        self.filled += other.filled;
     }
 }
 
@@ -246,26 +278,42 @@ impl Quantity for Crowding {
 
 impl Quantity for Slope {
     type Rate<const D: usize> = SlopeSum<D>;
-    /// Σ c ∇W V, and the share that is filled.
-    type Sum<const D: usize, L: Lanes> = ([L; D], L);
+    /// Σ c ∇W V, and the moments.
+    type Sum<const D: usize, L: Lanes> = ([L; D], [[L; D]; D]);
 
     #[inline(always)]
-    fn zero<const D: usize, L: Lanes>() -> ([L; D], L) {
-        ([L::zero(); D], L::zero())
+    fn zero<const D: usize, L: Lanes>() -> ([L; D], [[L; D]; D]) {
+        ([L::zero(); D], [[L::zero(); D]; D])
     }
 
     #[inline(always)]
-    fn add<const D: usize, L: Lanes>(sum: &mut ([L; D], L), coefficient: L, pair: &Pair<D, L>) {
+    fn add<const D: usize, L: Lanes>(
+        sum: &mut ([L; D], [[L; D]; D]),
+        coefficient: L,
+        pair: &Pair<D, L>,
+    ) {
         Pressure::add(&mut sum.0, coefficient, pair);
-        let metres = pair.unit * lanes(-1.0 / D as f64);
-        sum.1 = (pair.distance2 * metres).mul_add(pair.weight, sum.1);
+        let weight = pair.weight * -pair.unit;
+        for (k, row) in sum.1.iter_mut().enumerate() {
+            let factor = weight * pair.offset[k];
+            for (l, moment) in row.iter_mut().enumerate() {
+                *moment = factor.mul_add(pair.offset[l], *moment);
+            }
+        }
     }
 
     #[inline(always)]
-    fn rates<const D: usize, L: Lanes>(sum: &([L; D], L), _: &[f64], rates: &mut [SlopeSum<D>]) {
-        let (sum, filled) = (sum.0.map(numbers), numbers(sum.1));
+    fn rates<const D: usize, L: Lanes>(
+        sum: &([L; D], [[L; D]; D]),
+        _: &[f64],
+        rates: &mut [SlopeSum<D>],
+    ) {
+        let (sum, moments) = (sum.0.map(numbers), sum.1.map(|row| row.map(numbers)));
         for (l, rate) in rates.iter_mut().enumerate() {
-            *rate = SlopeSum { sum: std::array::from_fn(|k| sum[k][l]), filled: filled[l] };
+            *rate = SlopeSum {
+                sum: std::array::from_fn(|k| sum[k][l]),
+                moments: std::array::from_fn(|k| std::array::from_fn(|m| moments[k][m][l])),
+            };
         }
     }
 }

@@ -1,8 +1,8 @@
 use super::{Pair, PairTerm, Slope, Source, Target};
 use sph_kernels::Lanes;
 
-/// How the support radius grows from place to place: ∇R_i = Σ_j (R_j − R_i) ∇W_ij V_j over the share of
-/// the support that fluid fills, here over the largest radius.
+/// How the support radius grows from place to place: Σ_j (R_j − R_i) ∇W_ij V_j, from which the sweep makes
+/// ∇R_i, here over the largest radius.
 ///
 /// A wall has no radii of its own: it goes on as the fluid beside it does. With pairs of the radius
 /// R_ij = (R_i + R_j)/2 the sum Σ_j ∇W_ij V_j over the half of a support above a plane has a part along
@@ -22,23 +22,20 @@ impl<const D: usize> PairTerm<D, Slope> for RadiusSlope {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terms::{Stretch, scalar};
+    use crate::terms::{SlopeSum, Stretch, scalar};
 
     #[test]
     fn radii_that_grow_linearly_have_their_slope() {
         // Neighbours on four sides; R/R_max = 0.5 + 2 x.
-        let mut sum = [0.0; 2];
-        let mut filled = 0.0;
+        let mut all = SlopeSum::default();
         for r in [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]] {
-            let (i, j, mut pair) = scalar::pair(r, ([0.0; 2], [0.0; 2]), (0.0, 0.0), 0.01, -50.0);
+            let (i, j, mut pair) = scalar::pair(r, ([0.0; 2], [0.0; 2]), (0.0, 0.0), 0.01, -5000.0);
             let difference = -2.0 * r[0];
             let ratio = 0.5 + 0.5 * difference;
             pair.stretch = Some(Stretch { ratio, inverse: 1.0 / ratio, difference });
-            let rate = scalar::rate::<Slope, _>(&RadiusSlope, &(i, j, pair));
-            filled += rate.filled;
-            (0..2).for_each(|k| sum[k] += rate.sum[k]);
+            all += scalar::rate::<Slope, _>(&RadiusSlope, &(i, j, pair));
         }
-        let slope = sum.map(|sum| sum / filled);
+        let slope = all.gradient().unwrap();
         assert!((slope[0] - 2.0).abs() < 1e-12 && slope[1].abs() < 1e-12, "{slope:?}");
     }
 }
