@@ -80,7 +80,7 @@ mod tests {
         let (fine, coarse) =
             (graded.volumes.iter().sum::<f64>(), plain.volumes.iter().sum::<f64>());
         assert!((fine / coarse - 1.0).abs() < 0.02, "{fine} {coarse}");
-        assert!(graded.positions.len() < 2 * plain.positions.len());
+        assert!(graded.positions.len() < 3 * plain.positions.len());
         let below: f64 = (0..graded.positions.len())
             .filter(|&i| (graded.positions[i][0] - 1.0).abs() < 0.05 && graded.depths[i] < 0.025)
             .map(|i| graded.volumes[i])

@@ -9,6 +9,7 @@ use super::super::{Geometry, overlap};
 use super::seeds::Seeds;
 use crate::scene::{Scene, SceneError};
 use crate::space::{offset, wrapped};
+use crate::terms::{WallPair, WallPush, WallStretch};
 use sph_geometry::{Aabb, SpacingField, WallElements};
 use sph_kernels::{Kernel, WendlandC2};
 use sph_neighbors::{Grid, LevelList, NeighborList, PairReach};
@@ -116,24 +117,33 @@ pub fn packed<const D: usize>(
             }
             let walls = beside.neighbors(t);
             let slope = if walls.is_empty() { [0.0; D] } else { slope(field, x, own) };
+            // What a wall does in a run: it pushes and leans as there.
+            let mut push = WallPush::<D, f64>::zero();
             for &w in walls {
                 let (w, radius) = (w as usize, supports * own);
-                let r = offset(x, &around.positions[w], &place.periods);
-                let distance = r.iter().map(|c| c * c).sum::<f64>().sqrt();
-                if distance >= radius {
+                let offset = offset(x, &around.positions[w], &place.periods);
+                let distance2 = offset.iter().map(|c| c * c).sum::<f64>();
+                if distance2 >= radius * radius {
                     continue;
                 }
-                let factor = gradient(radius, distance) * around.volumes[w];
-                let normal = &around.normals[w];
-                let height: f64 = (0..D).map(|k| r[k] * normal[k]).sum();
-                // A wall leans as it does in a run: see the term `RadiusSlope`.
-                let above = (height - around.depths[w]).max(0.0);
-                let lean = -0.5 * factor * height * above / own;
-                let along: f64 = (0..D).map(|k| slope[k] * normal[k]).sum();
-                for k in 0..D {
-                    sum[k] += factor * r[k] + lean * (slope[k] - along * normal[k]);
-                }
+                let pair = WallPair {
+                    offset,
+                    distance2,
+                    normal: around.normals[w],
+                    depth: around.depths[w],
+                    weight: gradient(radius, distance2.sqrt()) * around.volumes[w],
+                    unit: 1.0,
+                    per_unit: 1.0,
+                    stretch: Some(WallStretch {
+                        ratio: 1.0,
+                        inverse: 1.0,
+                        lean: slope.map(|slope| -0.5 * slope / own),
+                    }),
+                };
+                push.add(1.0, 0.0, &pair);
             }
+            let push = push.felt();
+            (0..D).for_each(|k| sum[k] += push[k]);
             let factor = RATE * own * own;
             let step: [f64; D] = std::array::from_fn(|k| MEMORY * moves[t][k] - factor * sum[k]);
             let length = step.iter().map(|c| c * c).sum::<f64>().sqrt();
