@@ -5,6 +5,7 @@ use crate::grading::Grading;
 use crate::lio::Extremes;
 use crate::scene::{ErrorKind, Numerics, OnLost, Scene, SceneError, SoundSpeed};
 use crate::stability::largest_courant;
+use crate::terms::strengthened;
 use crate::timestep::StepLimits;
 use serde::Serialize;
 
@@ -53,7 +54,10 @@ impl<const D: usize> Constants<D> {
     /// The Courant number of the steps: that of the scene, or the largest that its density diffusion and
     /// viscosity bear.
     pub fn courant(&self) -> f64 {
-        self.cfl.min(largest_courant(self.density_diffusion, self.artificial_viscosity))
+        // Where spacings grow, viscosity is stronger.
+        let strengthened = self.grading.map_or(1.0, |_| strengthened(TYPICAL_GROWTH));
+        let viscosity = self.artificial_viscosity * strengthened;
+        self.cfl.min(largest_courant(self.density_diffusion, viscosity))
     }
 
     /// A length that goes with the spacing, given for the largest: for the smallest.
@@ -71,6 +75,9 @@ impl<const D: usize> Constants<D> {
         }
     }
 }
+
+/// Spacing over that of the next particle where spacings grow.
+const TYPICAL_GROWTH: f64 = 1.05;
 
 /// What limits the time step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

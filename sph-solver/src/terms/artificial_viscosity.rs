@@ -1,4 +1,4 @@
-use super::{Pair, PairTerm, Pressure, Source, Target, viscous};
+use super::{Pair, PairTerm, Pressure, Source, Target, lanes, viscous};
 use sph_kernels::Lanes;
 
 /// Artificial viscosity of the inviscid scheme:
@@ -6,6 +6,10 @@ use sph_kernels::Lanes;
 ///
 /// Source: Antuono, Colagrossi, Marrone & Molteni (2010), eq. 3–5; Marrone et al. (2011), Comput.
 /// Methods Appl. Mech. Eng. 200, eq. 3. It acts on approaching and receding pairs alike.
+///
+/// Between particles of different support radii it is 1 + 40 |R_j − R_i|/R_ij times as strong: sums over
+/// neighbours of different sizes have errors in proportion to the pressure, and what these set in motion
+/// along a wall nothing else would stop.
 #[derive(Debug, Clone, Copy)]
 pub struct ArtificialViscosity {
     /// α h c0 ρ0 for the largest smoothing length, kg/(m s).
@@ -17,8 +21,21 @@ pub struct ArtificialViscosity {
 impl<const D: usize> PairTerm<D, Pressure> for ArtificialViscosity {
     #[inline(always)]
     fn coefficient<L: Lanes>(&self, i: &Target<D, L>, j: &Source<D, L>, pair: &Pair<D, L>) -> L {
-        viscous(self.strength, self.softening, i, j, pair)
+        let usual = viscous(self.strength, self.softening, i, j, pair);
+        let Some(stretch) = &pair.stretch else { return usual };
+        let difference = stretch.difference.max(-stretch.difference) * stretch.inverse;
+        usual * difference.mul_add(lanes(OF_SIZES), lanes(1.0))
     }
+}
+
+/// What the difference of support radii adds to the strength, times the relative difference.
+const OF_SIZES: f64 = 40.0;
+
+/// How many times as strong artificial viscosity is between particles whose spacings grow by `growth`
+/// from one to the next.
+pub fn strengthened(growth: f64) -> f64 {
+    // Pairs are two spacings apart on average.
+    1.0 + 2.0 * OF_SIZES * (growth - 1.0)
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ mod wall_friction;
 mod wall_pressure;
 mod wall_push;
 
-pub use artificial_viscosity::ArtificialViscosity;
+pub use artificial_viscosity::{ArtificialViscosity, strengthened};
 pub use continuity::Continuity;
 pub use delta_continuity::DeltaContinuity;
 pub use pressure::SymmetricPressure;

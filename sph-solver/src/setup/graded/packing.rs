@@ -15,14 +15,14 @@ use sph_kernels::{Kernel, WendlandC2};
 use sph_neighbors::{Grid, LevelList, NeighborList, PairReach};
 
 /// How often particles move.
-const MOVES: usize = 160;
+const MOVES: usize = 320;
 
 /// A particle moves by this times −s² Σ ∇W V, s its spacing …
 const RATE: f64 = 0.3;
 
 /// … and by this share of its last move again (the heavy ball of Polyak 1964), which halves what is left
 /// after so many moves, and halves it again.
-const MEMORY: f64 = 0.85;
+const MEMORY: f64 = 0.92;
 
 /// The most that it moves at a time, in spacings.
 const FARTHEST: f64 = 0.2;
