@@ -35,7 +35,9 @@ pub use aabb::Aabb;
 pub use affine::Affine;
 pub use body_elements::body_elements;
 pub use boundary::{Domain, WallParticles, free_cells, solid_at, wall_particles};
-pub use graded::{Cell, CellTree, Refinement, SpacingField, graded_wall_elements};
+pub use graded::{
+    Cell, CellTree, Refinement, SpacingField, graded_body_elements, graded_wall_elements,
+};
 pub use lattice::{
     Lattice, LatticeError, LatticeRuns, NearSurface, fill_lattice, lattice_inside, near_surface,
 };

@@ -72,6 +72,17 @@ pub fn wall_elements<const D: usize>(
 }
 
 impl<const D: usize> WallElements<D> {
+    /// Adds those of other elements that are at places of this kind.
+    pub(crate) fn extend_with(&mut self, other: &Self, is_here: impl Fn(&[f64; D]) -> bool) {
+        for i in (0..other.positions.len()).filter(|&i| is_here(&other.positions[i])) {
+            self.positions.push(other.positions[i]);
+            self.volumes.push(other.volumes[i]);
+            self.solids.push(other.solids[i]);
+            self.normals.push(other.normals[i]);
+            self.depths.push(other.depths[i]);
+        }
+    }
+
     /// Adds an element of solid number `owner`.
     pub(crate) fn add(
         &mut self,

@@ -7,4 +7,4 @@ mod walls;
 
 pub use cells::{Cell, CellTree};
 pub use field::{Refinement, SpacingField};
-pub use walls::graded_wall_elements;
+pub use walls::{graded_body_elements, graded_wall_elements};

@@ -1,9 +1,11 @@
 //! Wall elements of different sizes.
 
-use super::CellTree;
+use super::{CellTree, Refinement, SpacingField};
 use crate::aabb::Aabb;
+use crate::body_elements::body_elements;
 use crate::boundary::Domain;
-use crate::lattice::LatticeError;
+use crate::lattice::{Lattice, LatticeError};
+use crate::shape::Shape;
 use crate::solid::Solid;
 use crate::wall_elements::{WallElements, wall_elements};
 
@@ -37,15 +39,36 @@ pub fn graded_wall_elements<const D: usize>(
             continue;
         }
         let some = wall_elements(solids, lattice, support, &part)?;
-        for i in 0..some.positions.len() {
-            if tree.cell_at(&some.positions[i]).level as usize == level {
-                all.positions.push(some.positions[i]);
-                all.volumes.push(some.volumes[i]);
-                all.solids.push(some.solids[i]);
-                all.normals.push(some.normals[i]);
-                all.depths.push(some.depths[i]);
-            }
-        }
+        all.extend_with(&some, |x| tree.cell_at(x).level as usize == level);
+    }
+    Ok(all)
+}
+
+/// Makes the wall elements of one solid that moves: what [`body_elements`] makes in the cells of a lattice,
+/// in cells of `spacing` (m) at its surface and larger ones in its depth, up to those of `coarsest` (m).
+/// `supports` is the support radius in spacings, and the lattice that of the coarsest.
+///
+/// # Errors
+///
+/// As [`body_elements`].
+pub fn graded_body_elements<const D: usize>(
+    solid: &Solid<D>,
+    lattice: &Lattice<D>,
+    spacing: f64,
+    supports: f64,
+) -> Result<WallElements<D>, LatticeError> {
+    let target = Shape::custom(solid.clone());
+    let fine = Refinement { target, spacing, within: f64::INFINITY, growth: 2.0 };
+    let field = SpacingField::new(lattice.spacing(), vec![fine], [None; D]);
+    let tree = CellTree::new(lattice, &field)?;
+    let tree = tree.of_walls(std::slice::from_ref(solid), supports);
+    let mut all = WallElements::default();
+    for (level, lattice) in tree.lattices().iter().enumerate() {
+        let edge = lattice.spacing();
+        let seen = supports * (2.0 * edge).min(field.coarsest());
+        let support = seen + if level > 0 { edge * (D as f64).sqrt() } else { 0.0 };
+        let some = body_elements(solid, lattice, support)?;
+        all.extend_with(&some, |x| tree.cell_at(x).level as usize == level);
     }
     Ok(all)
 }
@@ -60,10 +83,19 @@ fn common<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> Aabb<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::graded::{Refinement, SpacingField};
-    use crate::lattice::Lattice;
-    use crate::shape::Shape;
     use crate::solid::FluidSide;
+
+    #[test]
+    fn a_body_is_fine_outside_and_coarse_inside() {
+        let ball = Shape::sphere([0.1, 0.2], 0.4).unwrap();
+        let ball = Solid::new("ball", ball, FluidSide::Outside);
+        let lattice = Lattice::new([0.0; 2], 0.1).unwrap();
+        let graded = graded_body_elements(&ball, &lattice, 0.0125, 3.0).unwrap();
+        let plain = body_elements(&ball, &lattice.coarser(0.125), 0.3).unwrap();
+        let volume = |elements: &WallElements<2>| elements.volumes.iter().sum::<f64>();
+        assert!((volume(&graded) / volume(&plain) - 1.0).abs() < 0.05);
+        assert!(2 * graded.positions.len() < plain.positions.len());
+    }
 
     #[test]
     fn a_tank_is_as_thick_and_as_large_as_of_one_size() {

@@ -2,7 +2,7 @@
 
 use super::error::StudyError;
 use crate::rank::costs::{FLUID_COST, USUAL_NEIGHBOURS, WALL_COST};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{ErrorKind, Scene, SceneError};
 use crate::setup::{
     BYTES_PER_POSITION, BlockKind, Geometry, Occupancy, Positions, Sample, lattice_neighbours,
     lattice_neighbours_beyond,
@@ -66,6 +66,15 @@ impl<const D: usize> Field<D> {
     ///
     /// When the scene is wrong or has no fluid.
     pub fn read(scene: &Scene, costs: Costs, sample: bool) -> Result<Self, SceneError> {
+        if let Some(refine) = scene.refine.first() {
+            let kind = ErrorKind::Invalid {
+                what: "`sph partition` divides lattices, and this scene refines its particles"
+                    .into(),
+                help: "remove [[refine]] for this study; a run knows the radii of every particle"
+                    .into(),
+            };
+            return Err(scene.error(refine.place, kind));
+        }
         let geometry = Geometry::<D>::read(scene, None)?;
         let blocks = Sample::new(scene, &geometry)?;
         if sample || blocks.fluid() > MOST_PARTICLES {

@@ -1,8 +1,8 @@
 //! What a run would be and cost.
 
-use super::constants::time_step;
+use super::constants::{Constants, time_step};
 use super::report::{
-    CheckReport, PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SnapshotVolume,
+    Band, CheckReport, PAIRS_PER_CORE_SECOND, PASSES_PER_STEP, ParticleCounts, SnapshotVolume,
     SolidCount, VolumeOfFluid,
 };
 use super::{Setup, lattice_neighbours};
@@ -42,6 +42,7 @@ impl<const D: usize> Setup<D> {
             domain: [constants.domain.0.to_vec(), constants.domain.1.to_vec()],
             volume: VolumeOfFluid { regions: self.volume_of_regions, particles: self.volume() },
             spacing: constants.spacing,
+            bands: self.bands(),
             smoothing_length: constants.smoothing_length,
             support_radius: constants.support_radius,
             neighbours,
@@ -58,6 +59,29 @@ impl<const D: usize> Setup<D> {
             ranks,
             meshes: self.meshes.clone(),
         })
+    }
+}
+
+impl<const D: usize> Setup<D> {
+    /// Fluid particles by how often the largest spacing was halved.
+    fn bands(&self) -> Vec<Band> {
+        let Constants { spacing, grading, .. } = &self.constants;
+        let fluid = self.particles.of_kind(0);
+        let mut bands = vec![Band { spacing: [*spacing; 2], particles: fluid.len() }];
+        let Some(grading) = grading else { return bands };
+        bands.clear();
+        for mass in &self.particles.mass[fluid] {
+            let own = spacing * grading.ratio::<D>(*mass);
+            let number = (spacing / own).log2().floor() as usize;
+            while bands.len() <= number {
+                let most = spacing * 0.5_f64.powi(bands.len() as i32);
+                bands.push(Band { spacing: [most, most], particles: 0 });
+            }
+            let band = &mut bands[number];
+            band.spacing[1] = band.spacing[1].min(own);
+            band.particles += 1;
+        }
+        bands
     }
 }
 

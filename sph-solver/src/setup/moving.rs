@@ -6,7 +6,7 @@ use crate::csv_file;
 use crate::scene::{self, At, Degree, ErrorKind, Motion, Place, Scene, SceneError, TimedFormula};
 use crate::walls::WallElements;
 use nalgebra::{Matrix3, Unit, Vector3};
-use sph_geometry::{Aabb, Lattice, Solid, body_elements, shape_mass_properties};
+use sph_geometry::{Aabb, LatticeError, Solid, shape_mass_properties};
 
 /// Moments at which the speed of a prescribed motion is looked at.
 const SAMPLES: usize = 1000;
@@ -40,17 +40,15 @@ pub fn bodies<const D: usize>(
     Ok(bodies)
 }
 
-/// Makes the wall elements of a solid that moves, with ids from `first` on.
+/// Gives a solid that moves its wall elements, with ids from `first` on.
 pub fn add_elements<const D: usize>(
     scene: &Scene,
     body: &mut Body<D>,
-    lattice: &Lattice<D>,
-    support: f64,
+    elements: Result<sph_geometry::WallElements<D>, LatticeError>,
     first: u64,
 ) -> Result<(), SceneError> {
     let place = scene.solid[usize::from(body.solid)].place;
-    let elements = body_elements(&body.shape, lattice, support)
-        .map_err(|error| lattice_error(scene, place, &error))?;
+    let elements = elements.map_err(|error| lattice_error(scene, place, &error))?;
     if elements.positions.is_empty() {
         let kind = ErrorKind::Invalid {
             what: format!("solid `{}` moves, but has no wall particles", body.shape.name),

@@ -2,6 +2,7 @@
 
 use super::{Geometry, domain, fill, moving, nothing, overlap, walls};
 use crate::scene::{Scene, SceneError};
+use sph_geometry::body_elements;
 
 /// Memory that reports on positions take per particle at their peak, bytes.
 pub const BYTES_PER_POSITION: f64 = 130.0;
@@ -35,7 +36,8 @@ impl<const D: usize> Positions<D> {
         let fluid = position.len();
         position.extend_from_slice(&walls.positions);
         for mut body in moving::bodies(scene, solids)? {
-            moving::add_elements(scene, &mut body, lattice, support, 0)?;
+            let elements = body_elements(&body.shape, lattice, support);
+            moving::add_elements(scene, &mut body, elements, 0)?;
             position.extend_from_slice(&body.elements.position);
         }
         Ok(Self { position, fluid })

@@ -36,6 +36,8 @@ pub struct CheckReport {
     pub volume: VolumeOfFluid,
     /// Initial particle distance, m.
     pub spacing: f64,
+    /// Particles by their spacing, the coarsest first; one band where all have the same.
+    pub bands: Vec<Band>,
     /// Smoothing length, m.
     pub smoothing_length: f64,
     /// Support radius, m.
@@ -79,6 +81,15 @@ pub struct ParticleCounts {
     pub fluid: usize,
     /// Of each solid, in the order of the scene.
     pub solids: Vec<SolidCount>,
+}
+
+/// Fluid particles of about the same spacing.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Band {
+    /// Largest and smallest spacing, m.
+    pub spacing: [f64; 2],
+    /// Number of particles.
+    pub particles: usize,
 }
 
 /// Volume of the fluid, m³ (m² in two dimensions).
@@ -146,6 +157,12 @@ impl fmt::Display for CheckReport {
         row("bounding box", corners(&self.bounding_box))?;
         row("domain", corners(&self.domain))?;
         row("spacing", format!("{} m", short(self.spacing)))?;
+        for Band { spacing: [most, least], particles } in
+            self.bands.iter().filter(|_| self.bands.len() > 1)
+        {
+            let range = format!("{} to {} m", short(*most), short(*least));
+            row("  band", format!("{range}: {} particles", grouped(*particles as f64)))?;
+        }
         let (h, support) = (short(self.smoothing_length), short(self.support_radius));
         row("smoothing length", format!("{h} m, support radius {support} m"))?;
         row("neighbours", format!("{} inside the fluid", self.neighbours))?;

@@ -8,8 +8,8 @@ use crate::bodies::Body;
 use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
 use sph_geometry::{
-    Aabb, Domain, FluidSide, Lattice, LatticeError, Solid, WallElements, free_cells, wall_elements,
-    wall_particles,
+    Aabb, Domain, FluidSide, Lattice, LatticeError, Solid, WallElements, body_elements, free_cells,
+    wall_elements, wall_particles,
 };
 
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
@@ -103,8 +103,11 @@ pub fn add_walls<const D: usize>(
         Some(field) => graded::find_walls(scene, geometry, field)?,
     };
     for body in &mut *bodies {
-        let (lattice, support) = graded::lattice_of_body(scene, geometry, body, support)?;
-        moving::add_elements(scene, body, &lattice, support, 0)?;
+        let elements = match &geometry.spacing {
+            None => body_elements(&body.shape, &geometry.lattice, support),
+            Some(field) => graded::body_elements(scene, geometry, field, body),
+        };
+        moving::add_elements(scene, body, elements, 0)?;
     }
     let moving = bodies.iter().map(|body| body.elements.len()).sum::<usize>();
     let total = particles.len() + walls.positions.len() + moving;

@@ -13,8 +13,8 @@ use super::{Geometry, lattice_error, walls};
 use crate::bodies::Body;
 use crate::scene::{Scene, SceneError};
 use sph_geometry::{
-    Aabb, CellTree, Domain, FluidSide, Lattice, Refinement, Shape, Solid, SpacingField,
-    WallElements, graded_wall_elements,
+    Aabb, CellTree, Domain, FluidSide, LatticeError, Refinement, Shape, Solid, SpacingField,
+    WallElements, graded_body_elements, graded_wall_elements,
 };
 
 /// The spacing at every place; none for a scene that refines nothing.
@@ -163,22 +163,20 @@ pub fn find_walls<const D: usize>(
     )
 }
 
-/// The lattice that a solid which moves has its wall elements on, and the support radius (m) of the
-/// coarsest particles that it meets at the start: as fine as the finest particles near it.
+/// The wall elements of a solid that moves, in cells as fine as the finest particles near it at the
+/// start.
 ///
 /// # Errors
 ///
 /// When the finest spacing is too small for a lattice.
-pub fn lattice_of_body<const D: usize>(
+pub fn body_elements<const D: usize>(
     scene: &Scene,
     geometry: &Geometry<D>,
+    field: &SpacingField<D>,
     body: &Body<D>,
-    support: f64,
-) -> Result<(Lattice<D>, f64), SceneError> {
-    let Some(field) = &geometry.spacing else { return Ok((geometry.lattice, support)) };
+) -> Result<WallElements<D>, LatticeError> {
     let near = field.least_in(&body.shape.shape.bounding_box());
-    let tree = tree(scene, geometry, field)?;
-    let fits = |lattice: &&Lattice<D>| lattice.spacing() <= near * (1.0 + 1e-9);
-    let lattice = tree.lattices().iter().find(fits).or(tree.lattices().last());
-    Ok((lattice.copied().unwrap_or(geometry.lattice), support))
+    let halvings = (field.coarsest() / near * (1.0 - 1e-9)).log2().ceil().max(0.0);
+    let spacing = field.coarsest() * 0.5_f64.powf(halvings);
+    graded_body_elements(&body.shape, &geometry.lattice, spacing, *scene.numerics.support)
 }
