@@ -38,7 +38,7 @@ pub fn chapters() -> Vec<Chapter> {
     let mut paths = vec![PathBuf::from("README.md")];
     collect(Path::new("docs"), &mut paths);
     paths.sort();
-    paths.iter().map(|path| Chapter::read(path)).collect()
+    paths.into_iter().map(Chapter::read).collect()
 }
 
 fn collect(folder: &Path, paths: &mut Vec<PathBuf>) {

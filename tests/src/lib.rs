@@ -9,6 +9,7 @@
 #![forbid(unsafe_code)]
 
 mod book;
+mod inputs;
 mod message;
 mod page;
 mod program;
@@ -24,6 +25,7 @@ mod vtu;
 mod whole;
 
 pub use book::{Chapter, Fence, anchor, chapters};
+pub use inputs::Input;
 pub use message::Message;
 pub use page::Page;
 pub use program::{mpi_program, program, skipped, workspace};
