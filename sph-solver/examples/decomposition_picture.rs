@@ -120,8 +120,7 @@ fn main() -> Result<(), Failure> {
         }
     }
     for (rank, piece) in pieces.iter().enumerate() {
-        let [local, inner, outer] =
-            [&piece.local, &piece.inner, &piece.outer].map(|part| part.len());
+        let [local, inner, outer] = [&piece.local, &piece.inner, &piece.outer].map(Vec::len);
         eprintln!("rank {rank}: {local} local, {inner} inner, {outer} outer");
     }
     println!("{svg}</svg>");
