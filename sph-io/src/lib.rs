@@ -10,6 +10,7 @@ mod pvd;
 mod series;
 mod table;
 mod vtu;
+mod vtu_check;
 mod vtu_read;
 
 pub use atomic::{remove_stale_temporaries, write_atomically, write_text_atomically};

@@ -1,10 +1,11 @@
 //! Reads a `.vtu` snapshot back.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use vtkio::model::{Attribute, DataSet, Vtk};
+use vtkio::model::{Attribute, DataSet, Piece, UnstructuredGridPiece, Vtk};
 
-use crate::IoError;
+use crate::{IoError, vtu_check};
 
 /// The particles of a `.vtu` file, with all numbers as `f64`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,14 +77,12 @@ pub fn read_vtu(path: impl AsRef<Path>) -> Result<Snapshot, IoError> {
 }
 
 fn read(path: &Path) -> Result<Snapshot, String> {
-    let file = Vtk::import(path).map_err(|error| error.to_string())?;
-    let DataSet::UnstructuredGrid { pieces, .. } = file.data else {
-        return Err("it holds no unstructured grid".into());
-    };
+    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    vtu_check::check(&bytes)?;
+    // vtkio was made for whole files: on some damaged ones it panics.
+    let parsed = catch_unwind(AssertUnwindSafe(|| pieces(path)));
     let mut whole: Option<Snapshot> = None;
-    for piece in pieces {
-        let piece =
-            piece.into_loaded_piece_data(path.parent()).map_err(|error| error.to_string())?;
+    for piece in parsed.map_err(|_| "it is damaged")?? {
         let points: Vec<f64> = piece.points.cast_into().ok_or("its positions are no numbers")?;
         let (rows, rest) = points.as_chunks::<3>();
         if !rest.is_empty() {
@@ -110,6 +109,18 @@ fn read(path: &Path) -> Result<Snapshot, String> {
         }
     }
     Ok(whole.unwrap_or_default())
+}
+
+/// The pieces of the grid in a file.
+fn pieces(path: &Path) -> Result<Vec<UnstructuredGridPiece>, String> {
+    let file = Vtk::import(path).map_err(|error| error.to_string())?;
+    let DataSet::UnstructuredGrid { pieces, .. } = file.data else {
+        return Err("it holds no unstructured grid".into());
+    };
+    let load = |piece: Piece<UnstructuredGridPiece>| {
+        piece.into_loaded_piece_data(path.parent()).map_err(|error| error.to_string())
+    };
+    pieces.into_iter().map(load).collect()
 }
 
 /// Adds the particles of another piece.

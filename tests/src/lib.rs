@@ -8,6 +8,8 @@
 //! the variables.
 #![forbid(unsafe_code)]
 
+mod book;
+mod inputs;
 mod message;
 mod page;
 mod program;
@@ -22,9 +24,11 @@ mod table;
 mod vtu;
 mod whole;
 
+pub use book::{Chapter, Fence, anchor, chapters};
+pub use inputs::Input;
 pub use message::Message;
 pub use page::Page;
-pub use program::{mpi_program, program, skipped};
+pub use program::{mpi_program, program, skipped, workspace};
 pub use python::python_with;
 pub use results::{Results, copy_folder};
 pub use run::Run;

@@ -51,6 +51,10 @@ pub fn skipped(what: &str, why: &str) {
 }
 
 /// Root of the workspace.
-pub(crate) fn workspace() -> &'static Path {
+///
+/// # Panics
+///
+/// Never: the package lies in it.
+pub fn workspace() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace")
 }

@@ -7,20 +7,21 @@ pub type Rgb = [u8; 3];
 /// interpolated.
 pub type Scale = [Rgb; 9];
 
-/// Viridis (van der Walt & Smith 2015, for matplotlib), at every eighth.
+/// Blues of water from deep to foam, about eight steps of lightness (CIE L*) apart: slow water is dark, and the
+/// fastest still stands out from paper and from walls.
 pub const SPEED: Scale = [
-    [68, 1, 84],
-    [71, 45, 123],
-    [59, 82, 139],
-    [44, 114, 142],
-    [33, 145, 140],
-    [40, 174, 128],
-    [94, 201, 98],
-    [173, 220, 48],
-    [253, 231, 37],
+    [14, 52, 108],
+    [16, 72, 140],
+    [20, 94, 168],
+    [30, 118, 192],
+    [50, 143, 208],
+    [82, 169, 220],
+    [118, 194, 230],
+    [156, 217, 239],
+    [196, 239, 248],
 ];
 
-/// Plasma, of the same family, at every eighth.
+/// Plasma (van der Walt & Smith 2015, for matplotlib), at every eighth.
 pub const PRESSURE: Scale = [
     [13, 8, 135],
     [84, 2, 163],

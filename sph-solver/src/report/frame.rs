@@ -57,12 +57,14 @@ pub fn figure(
         }
     }
     // Disks of the plane reach beyond the corners of their cells, so that the fluid has no holes.
-    let radius = if view.flat { 0.8 } else { 0.56 };
+    // Balls of space overlap, so that they make one surface.
+    let radius = if view.flat { 0.8 } else { 0.7 };
     for (point, value) in fluid.positions.iter().zip(values) {
         if seen.contains(point) {
             picture.particle(point, radius * spacing, (value - low) / (high - low));
         }
     }
+    picture.join_fluid(spacing);
     let data = STANDARD.encode(picture.png()?);
     let place = Placing::new(&view, &extent);
     let (width, height) = place.size();

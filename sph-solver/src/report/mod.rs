@@ -16,6 +16,7 @@ mod pictures;
 mod plot;
 mod results;
 mod scan;
+mod surface;
 mod ticks;
 mod view;
 

@@ -1,6 +1,7 @@
 //! Draws particles as pixels and packs them as a PNG.
 
 use super::colours::{self, Rgb, Scale};
+use super::surface::Surface;
 use super::view::{Extent, View};
 
 /// A picture of 256 colours being drawn.
@@ -17,6 +18,8 @@ pub struct Picture {
     shades: usize,
     pixels: Vec<u8>,
     nearness: Vec<f32>,
+    /// Place on the scale of the fluid that is seen; NaN where none is.
+    shares: Vec<f32>,
 }
 
 /// Index of the paper.
@@ -38,7 +41,7 @@ impl Picture {
         let pixels = |length: f64| ((length * per_metre).round() as usize).clamp(1, 4000);
         let (width, height) = (pixels(across), pixels(up));
         // What is flat needs no shades, and gets more levels instead.
-        let (levels, shades) = if view.flat { (246, 1) } else { (41, 6) };
+        let (levels, shades) = if view.flat { (246, 1) } else { (30, 8) };
         let mut palette = vec![[255, 255, 255]];
         palette.extend((0..WALLS).map(|k| {
             let light = WALL_DIM + (1.0 - WALL_DIM) * k as f64 / (WALLS - 1) as f64;
@@ -62,17 +65,37 @@ impl Picture {
             shades,
             pixels: vec![PAPER; width * height],
             nearness: vec![f32::NEG_INFINITY; width * height],
+            shares: vec![f32::NAN; width * height],
         }
     }
 
     /// Draws a fluid particle; `share` is its place on the scale from 0 to 1.
     pub fn particle(&mut self, point: &[f64; 3], radius: f64, share: f64) {
-        let level = (share.clamp(0.0, 1.0) * (self.levels - 1) as f64).round() as usize;
-        let (first, shades) = (1 + WALLS + level * self.shades, self.shades);
-        self.ball(point, radius, |light| {
-            let shade = (light * (shades - 1) as f64).round() as usize;
-            (first + shade.min(shades - 1)) as u8
-        });
+        let share = share.clamp(0.0, 1.0);
+        let (levels, shades) = (self.levels, self.shades);
+        self.ball(point, radius, share as f32, |light| fluid(share, light, levels, shades));
+    }
+
+    /// Makes one surface of the particles of a fluid in space, `spacing` apart: their balls are blended and
+    /// lit anew. The plane is left as it is.
+    pub fn join_fluid(&mut self, spacing: f64) {
+        if self.view.flat {
+            return;
+        }
+        let mut surface = Surface {
+            width: self.width,
+            nearness: &mut self.nearness,
+            shares: &mut self.shares,
+            pixel: 1.0 / self.scale,
+            spacing,
+        };
+        surface.smooth();
+        let (levels, shades) = (self.levels, self.shades);
+        for (index, pixel) in self.pixels.iter_mut().enumerate() {
+            if let Some((share, [right, up, towards])) = surface.at(index) {
+                *pixel = fluid(share, lighting(right, up, towards), levels, shades);
+            }
+        }
     }
 
     /// Draws a piece of a wall. In space only those that face the viewer are seen, so that a tank
@@ -89,9 +112,10 @@ impl Picture {
             // Lit as the face that it is part of: walls look even.
             let light = lighting(facing[0], facing[1], facing[2]);
             let shade = 1 + (light * (WALLS - 1) as f64).round() as usize;
-            return self.ball(point, 0.75 * size, |_| shade as u8);
+            return self.ball(point, 0.75 * size, f32::NAN, |_| shade as u8);
         }
-        self.ball(point, 0.6 * size, |light| 1 + (light * (WALLS - 1) as f64).round() as u8);
+        let shade = |light: f64| 1 + (light * (WALLS - 1) as f64).round() as u8;
+        self.ball(point, 0.6 * size, f32::NAN, shade);
     }
 
     fn place(&self, point: &[f64; 3]) -> Option<[f64; 3]> {
@@ -102,7 +126,7 @@ impl Picture {
             .then_some([x, y, seen[2]])
     }
 
-    fn ball(&mut self, point: &[f64; 3], radius: f64, colour: impl Fn(f64) -> u8) {
+    fn ball(&mut self, point: &[f64; 3], radius: f64, share: f32, colour: impl Fn(f64) -> u8) {
         let Some([x, y, near]) = self.place(point) else { return };
         let r = (radius * self.scale).max(0.8);
         let range = |middle: f64, end: usize| {
@@ -123,6 +147,7 @@ impl Picture {
                 let pixel = row * self.width + column;
                 if near as f32 > self.nearness[pixel] {
                     self.nearness[pixel] = near as f32;
+                    self.shares[pixel] = share;
                     self.pixels[pixel] = colour(lighting(dx, -dy, bulge));
                 }
             }
@@ -160,6 +185,13 @@ impl Picture {
         writer.finish()?;
         Ok(bytes)
     }
+}
+
+/// Index of the fluid at this place on the scale in this much light.
+fn fluid(share: f64, light: f64, levels: usize, shades: usize) -> u8 {
+    let step =
+        |part: f64, steps: usize| (part.clamp(0.0, 1.0) * (steps - 1) as f64).round() as usize;
+    (1 + WALLS + step(share, levels) * shades + step(light, shades)) as u8
 }
 
 /// Light from the upper left behind the viewer on a surface with this normal, from 0 to 1.
@@ -200,7 +232,7 @@ mod tests {
             picture.particle(&[0.0; 3], 0.1, shares[0]);
             let middle = picture.height / 2 * picture.width + picture.width / 2;
             let level = (picture.pixels[middle] as usize - 1 - WALLS) / picture.shades;
-            assert_eq!(level, (shares[1] * 40.0) as usize);
+            assert_eq!(level, (shares[1] * 29.0) as usize);
         }
     }
 

@@ -203,6 +203,8 @@ fn sizes_beyond_reason_are_refused() {
     assert_error(tank(&[endless]), ("--set", 1), "a region of fluid has no end", "difference");
     let huge = "domain={ min = [-1, -1e12], max = [5, 5] }";
     assert_error(tank(&[huge]), ("--set", 1), "is too large for a spacing", "smaller [domain]");
+    let long = "domain={ min = [-1, -1], max = [1e9, 5] }";
+    assert_error(tank(&[long]), ("--set", 1), "is too large for a spacing", "smaller [domain]");
 }
 
 #[test]

@@ -15,6 +15,9 @@ use sph_geometry::{
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
 const MOST_ROWS: f64 = 1e9;
 
+/// Nor longer ones.
+const LONGEST_ROW: f64 = 2e7;
+
 /// The solids of the scene as geometry.
 pub fn solids<const D: usize>(
     scene: &Scene,
@@ -210,8 +213,8 @@ fn searchable<const D: usize>(
     bounds: &Aabb<D>,
 ) -> Result<(Domain<D>, scene::Place), SceneError> {
     let place = scene.domain.as_ref().map_or(scene.numerics.spacing.place, |domain| domain.place);
-    let sides = (1..D).map(|axis| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing());
-    if sides.product::<f64>() > MOST_ROWS {
+    let side = |axis: usize| (bounds.max[axis] - bounds.min[axis]) / lattice.spacing();
+    if (1..D).map(side).product::<f64>() > MOST_ROWS || side(0) > LONGEST_ROW {
         let kind = ErrorKind::Invalid {
             what: format!(
                 "the domain {:?} to {:?} is too large for a spacing of {} m",
