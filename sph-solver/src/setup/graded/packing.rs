@@ -14,8 +14,15 @@ use sph_geometry::{Aabb, SpacingField, WallElements};
 use sph_kernels::{Kernel, WendlandC2};
 use sph_neighbors::{Grid, LevelList, NeighborList, PairReach};
 
-/// How often particles move.
+/// How often particles move at most.
 const MOVES: usize = 320;
+
+/// They stop when s |Σ ∇W V| is smaller than this in the mean square. Under gravity a particle is set in
+/// motion by what is left times the pressure, which is largest at the floor …
+const EVEN: f64 = 3e-4;
+
+/// … and without gravity there is no pressure at the start.
+const EVEN_ENOUGH: f64 = 2e-3;
 
 /// A particle moves by this times −s² Σ ∇W V, s its spacing …
 const RATE: f64 = 0.3;
@@ -75,8 +82,12 @@ pub fn packed<const D: usize>(
     let place = Place { geometry, domain, periods };
     let norm = WendlandC2::norm(D);
     let gradient = |radius: f64, distance: f64| {
-        norm * radius.powi(-(D as i32) - 2) * WendlandC2::slope(distance / radius)
+        let inverse = 1.0 / radius;
+        let square = inverse * inverse;
+        let factor = if D == 2 { square * square } else { square * square * inverse };
+        norm * factor * WendlandC2::slope(distance * inverse)
     };
+    let even = if scene.gravity::<D>() == [0.0; D] { EVEN_ENOUGH } else { EVEN };
     let elements = Elements::new(&grid, around, supports).map_err(search)?;
     let (mut near, mut beside) = (NeighborList::default(), NeighborList::default());
     let mut moves = vec![[0.0; D]; loose.len()];
@@ -99,21 +110,21 @@ pub fn packed<const D: usize>(
                 1,
             );
         }
-        let step = |t: usize| -> [f64; D] {
+        let step = |t: usize| -> ([f64; D], f64) {
             let (x, own) = (&targets[t], spacing[loose[t] as usize]);
             let mut sum = [0.0; D];
             let mut add = |y: &[f64; D], radius: f64, volume: f64| {
-                let r = offset(x, y, &place.periods);
-                let distance = r.iter().map(|c| c * c).sum::<f64>().sqrt();
-                if distance < radius {
-                    let factor = gradient(radius, distance) * volume;
+                let r = place.offset(x, y);
+                let distance2 = r.iter().map(|c| c * c).sum::<f64>();
+                if distance2 < radius * radius {
+                    let factor = gradient(radius, distance2.sqrt()) * volume;
                     (0..D).for_each(|k| sum[k] += factor * r[k]);
                 }
             };
             for &j in near.neighbors(t) {
                 let other = spacing[j as usize];
                 let radius = 0.5 * supports * (own + other);
-                add(&position[j as usize], radius, other.powi(D as i32));
+                add(&position[j as usize], radius, volume_of::<D>(other));
             }
             let walls = beside.neighbors(t);
             let slope = if walls.is_empty() { [0.0; D] } else { slope(field, x, own) };
@@ -121,7 +132,7 @@ pub fn packed<const D: usize>(
             let mut push = WallPush::<D, f64>::zero();
             for &w in walls {
                 let (w, radius) = (w as usize, supports * own);
-                let offset = offset(x, &around.positions[w], &place.periods);
+                let offset = place.offset(x, &around.positions[w]);
                 let distance2 = offset.iter().map(|c| c * c).sum::<f64>();
                 if distance2 >= radius * radius {
                     continue;
@@ -148,13 +159,14 @@ pub fn packed<const D: usize>(
             let step: [f64; D] = std::array::from_fn(|k| MEMORY * moves[t][k] - factor * sum[k]);
             let length = step.iter().map(|c| c * c).sum::<f64>().sqrt();
             let most = FARTHEST * own;
-            if length > most { step.map(|c| c * (most / length)) } else { step }
+            let left = own * own * sum.iter().map(|c| c * c).sum::<f64>();
+            (if length > most { step.map(|c| c * (most / length)) } else { step }, left)
         };
         use rayon::prelude::*;
-        let steps: Vec<[f64; D]> =
+        let steps: Vec<([f64; D], f64)> =
             (0..loose.len()).into_par_iter().with_min_len(256).map(step).collect();
         for (t, (&i, x)) in loose.iter().zip(&targets).enumerate() {
-            let step = steps[t];
+            let (step, _) = steps[t];
             let moved = std::array::from_fn(|k| x[k] + step[k]);
             let moved = wrapped(moved, &domain.min, &periods);
             if place.is_fluid(&moved) {
@@ -165,14 +177,24 @@ pub fn packed<const D: usize>(
                 moves[t] = [0.0; D];
             }
         }
+        let left: f64 = steps.iter().map(|(_, left)| left).sum();
+        if left <= even * even * steps.len() as f64 {
+            break;
+        }
     }
-    let mut volume: Vec<f64> = spacing.iter().map(|s| s.powi(D as i32)).collect();
+    let mut volume: Vec<f64> = spacing.iter().map(|s| volume_of::<D>(*s)).collect();
     // The water that is there, not a little more or less.
     let packed: f64 = loose.iter().map(|&i| volume[i as usize]).sum();
     for &i in &loose {
         volume[i as usize] *= loose_volume / packed;
     }
     Ok(Packed { position, volume })
+}
+
+/// Volume of a particle of this spacing (m), m^D.
+#[inline]
+fn volume_of<const D: usize>(spacing: f64) -> f64 {
+    if D == 2 { spacing * spacing } else { spacing * spacing * spacing }
 }
 
 /// The slope of the spacing at a place where it is `spacing` (m).
@@ -214,6 +236,16 @@ struct Place<'a, const D: usize> {
 }
 
 impl<const D: usize> Place<'_, D> {
+    /// `x − y`, to the nearest image.
+    #[inline]
+    fn offset(&self, x: &[f64; D], y: &[f64; D]) -> [f64; D] {
+        if self.periods == [None; D] {
+            std::array::from_fn(|k| x[k] - y[k])
+        } else {
+            offset(x, y, &self.periods)
+        }
+    }
+
     fn is_fluid(&self, x: &[f64; D]) -> bool {
         self.domain.contains(x)
             && self.geometry.regions.iter().any(|region| region.contains(x))
