@@ -30,6 +30,7 @@ pub const TABLES: &[Table] = &[
             ),
             ("solid", r#"[{ name = "floor", plane = { point = [0, 0], normal = [0, 1] } }]"#),
             ("domain", "{ min = [-1, 0], max = [3, 2] }"),
+            ("refine", "[{ factor = 4, sphere = { center = [0, 1], radius = 0.2 } }]"),
             ("periodic", r#"["x"]"#),
             ("probe", r#"[{ name = "P1", at = [0.9, 0.05], fields = ["pressure"] }]"#),
             ("output", "{ snapshots = 0.05, energies = 0.005 }"),
@@ -55,6 +56,12 @@ pub const TABLES: &[Table] = &[
             ("skin", "0.1"),
             ("on_lost", r#""remove""#),
         ],
+    },
+    Table {
+        definition: "Refine",
+        title: "`[[refine]]`",
+        words: "Where particles are finer. The keys of its [shape](#shapes) stand beside these:",
+        examples: &[("factor", "8"), ("within", "0.1"), ("growth", "1.04"), ("solid", r#""hull""#)],
     },
     Table {
         definition: "Fluid",

@@ -27,6 +27,7 @@ const HULL: &str = "solid=[{ name = \"hull\", fluid_side = \"outside\", sphere =
 const SPACE_HULL: &str =
     "solid=[{ name = \"hull\", fluid_side = \"outside\", mesh = \"hull.stl\" }]";
 const BARE: &str = "solid=[{ name = \"hull\", fluid_side = \"outside\" }]";
+const REFINED: &str = "refine=[{ factor = 2, sphere = { center = [0, 0], radius = 0.1 } }]";
 const VISCOUS: &str = "fluid.water.viscosity=0.001";
 
 /// Where a table is in a scene, with "3:" before it in three dimensions, and what the scene says there without
@@ -36,6 +37,7 @@ pub fn frames(definition: &str) -> &'static [(&'static str, &'static [&'static s
         "" => &[("", &[]), ("", &[DOMAIN])],
         "Numerics" => &[("numerics", &[])],
         "Fluid" => &[("fluid.water", &[]), ("fluid.water", &["fluid.water.jitter=0.1"])],
+        "Refine" => &[("refine.0", &[REFINED]), ("refine.0", &[HULL, "refine=[{ factor = 2 }]"])],
         "Region" => &[("fluid.water.regions.0", &[])],
         "Solid" => &[("solid.0", &[HULL]), ("solid.0", &[HULL, VISCOUS])],
         "ShapeKeys" => &[
