@@ -43,8 +43,10 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         bodies: &Bodies<D>,
     ) -> Result<Vec<(u64, [f64; D])>, RunError> {
         let gone = self.remove_outside(model);
+        let mut turned = false;
         for x in &mut self.state.position {
-            *x = wrapped(*x, &model.domain.0, &model.periods);
+            let before = std::mem::replace(x, wrapped(*x, &model.domain.0, &model.periods));
+            turned |= before != *x;
         }
         let search = Search::new(model)?;
         let settled = self.settled;
@@ -59,6 +61,11 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             self.lay_out(model, encoder, &outer);
             outer
         } else {
+            if turned {
+                // Words of double precision do not wrap around by themselves, and a difference to the
+                // nearest image rounds otherwise than one that is the nearest already.
+                self.lay_out(model, encoder, &State::default());
+            }
             State::default()
         };
         self.walls.retain(|wall| wall.frame().is_none());
