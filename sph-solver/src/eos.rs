@@ -66,16 +66,23 @@ impl EquationOfState {
         }
     }
 
-    /// Elastic energy per mass (J/kg) at a density, zero at ρ0: ∫ p/ρ² dρ, to the leading order
-    /// c0² (ρ − ρ0)²/(2 ρ0 ρ), exact for the linear equation up to O((ρ/ρ0 − 1)³).
+    /// Elastic energy per mass (J/kg) at a density, zero at ρ0: ∫ p/ρ² dρ, what the continuity equation
+    /// stores while the density changes from ρ0 to this one.
+    ///
+    /// c0² (ln x + 1/x − 1) with x = ρ/ρ0 for the linear equation,
+    /// (c0²/γ) ((x^(γ−1) − 1)/(γ − 1) + 1/x − 1) for that of Tait.
     pub fn elastic_energy(&self, density: f64) -> f64 {
-        let (density0, sound_speed) = match *self {
-            Self::Linear { density0, sound_speed } | Self::Tait { density0, sound_speed, .. } => {
-                (density0, sound_speed)
+        match *self {
+            Self::Linear { density0, sound_speed } => {
+                let deviation = (density - density0) / density0;
+                sound_speed * sound_speed * (deviation.ln_1p() - deviation / (1.0 + deviation))
             }
-        };
-        let deviation = density - density0;
-        sound_speed * sound_speed * deviation * deviation / (2.0 * density0 * density)
+            Self::Tait { density0, sound_speed, gamma } => {
+                let deviation = (density - density0) / density0;
+                let power = ((gamma - 1.0) * deviation.ln_1p()).exp_m1() / (gamma - 1.0);
+                sound_speed * sound_speed / gamma * (power - deviation / (1.0 + deviation))
+            }
+        }
     }
 }
 
@@ -101,5 +108,23 @@ mod tests {
             EquationOfState::Tait { density0: 1000.0, sound_speed: 30.0, gamma }.pressure(1020.0)
         };
         assert!((pressure(7.0) / pressure(7.0 + 1e-12) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn elastic_energy_is_the_work_of_the_pressure() {
+        let (density0, sound_speed) = (1000.0, 30.0);
+        let linear = EquationOfState::Linear { density0, sound_speed };
+        let tait = EquationOfState::Tait { density0, sound_speed, gamma: 7.0 };
+        for eos in [linear, tait] {
+            for end in [970.0, 1000.01, 1030.0] {
+                let steps = 1000;
+                let width = (end - density0) / f64::from(steps);
+                let middle = |k: i32| density0 + (f64::from(k) + 0.5) * width;
+                let power = |density: f64| eos.pressure(density) / (density * density);
+                let work: f64 = (0..steps).map(|k| power(middle(k)) * width).sum();
+                assert!((eos.elastic_energy(end) / work - 1.0).abs() < 1e-5, "{end}");
+            }
+            assert_eq!(eos.elastic_energy(density0), 0.0);
+        }
     }
 }

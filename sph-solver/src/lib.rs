@@ -5,6 +5,7 @@ pub mod block;
 pub mod bodies;
 pub mod cli;
 mod csv_file;
+pub mod energy;
 pub mod eos;
 pub mod error;
 pub mod grading;

@@ -17,6 +17,7 @@
 //! be updated as soon as its own fluxes are known, while its rates are in cache.
 
 use crate::block::{Block, FluidColumns};
+use crate::energy::Taken;
 use crate::loads::Loads;
 use crate::records::Record;
 use crate::team::Team;
@@ -38,9 +39,9 @@ pub trait Pass<const D: usize, S: Real>: Sync {
     /// How the targets are divided into clusters.
     fn clusters(&self) -> &Clusters;
 
-    /// Fluxes of the targets of a block from the old records, into its rates. Returns the loads on
-    /// solids that go with them.
-    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Self::Rate>) -> Loads;
+    /// Fluxes of the targets of a block from the old records, into its rates. Returns what goes with
+    /// them.
+    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Self::Rate>) -> Effects;
 
     /// New state of a block from its rates. `old` is indexed by particle like in `flux`.
     fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Self::Rate>) -> Extremes;
@@ -110,18 +111,48 @@ impl Extremes {
 pub struct Outcome {
     /// Largest values over the particles.
     pub extremes: Extremes,
-    /// Loads on solids.
-    pub loads: Loads,
+    /// What goes with the fluxes.
+    pub effects: Effects,
 }
 
 impl Outcome {
     /// Of no particle.
-    pub const NONE: Self = Self { extremes: Extremes::NONE, loads: Loads::NONE };
+    pub const NONE: Self = Self { extremes: Extremes::NONE, effects: Effects::NONE };
 
     /// Of both sets of particles.
     #[must_use]
     pub fn join(self, other: Self) -> Self {
-        Self { extremes: self.extremes.max(other.extremes), loads: self.loads.plus(other.loads) }
+        Self {
+            extremes: self.extremes.max(other.extremes),
+            effects: self.effects.join(other.effects),
+        }
+    }
+}
+
+/// What fluxes do besides changing the fluid, and what it costs.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Effects {
+    /// Loads on solids.
+    pub loads: Loads,
+    /// Energy that terms took, if somebody keeps books.
+    pub energy: Option<Box<Taken>>,
+}
+
+impl Effects {
+    /// Of no particle.
+    pub const NONE: Self = Self { loads: Loads::NONE, energy: None };
+
+    /// Of both sets of particles.
+    #[must_use]
+    pub fn join(self, other: Self) -> Self {
+        let energy = match (self.energy, other.energy) {
+            (Some(mut all), Some(more)) => {
+                all.join(&more);
+                Some(all)
+            }
+            (one, None) | (None, one) => one,
+        };
+        Self { loads: self.loads.plus(other.loads), energy }
     }
 }
 

@@ -54,36 +54,38 @@ impl LoadScale {
     }
 }
 
-/// Words of a load on its way between ranks: four of 32 bits for each number, so that those of many ranks
-/// add up without overflow.
-const WORDS: usize = 4 * NUMBERS;
+/// Words of a number on its way between ranks: 32 bits in each, so that those of many ranks add up without
+/// overflow.
+const WORDS: usize = 4;
 
-/// The sums over all ranks of loads that each rank has a part of, in the same order. Collective.
+/// The sums over all ranks of whole numbers that each rank has a part of, in the same order. Collective.
 ///
 /// # Errors
 ///
 /// When communication fails.
-pub fn on_all_ranks(
+pub fn on_all_ranks<const N: usize>(
     comm: &dyn Communicator,
-    parts: impl IntoIterator<Item = Quanta>,
-) -> Result<Vec<Quanta>, CommError> {
+    parts: impl IntoIterator<Item = [i128; N]>,
+) -> Result<Vec<[i128; N]>, CommError> {
     let mut words: Vec<u64> = parts.into_iter().flat_map(apart).collect();
     comm.sum_u64(&mut words)?;
-    Ok(words.chunks_exact(WORDS).map(together).collect())
+    Ok(words.chunks_exact(WORDS * N).map(together).collect())
 }
 
-fn apart(quanta: Quanta) -> impl Iterator<Item = u64> {
+/// The words of some numbers.
+pub fn apart<const N: usize>(quanta: [i128; N]) -> impl Iterator<Item = u64> {
     quanta
         .into_iter()
         .flat_map(|number| (0..4).map(move |k| (number as u128 >> (32 * k)) as u64 & 0xffff_ffff))
 }
 
-fn together(words: &[u64]) -> Quanta {
+/// The numbers again, or the sums of those whose words were summed.
+pub fn together<const N: usize>(words: &[u64]) -> [i128; N] {
     let number = |words: &[u64]| {
         let word = |k: usize| u128::from(words[k]) << (32 * k);
         (0..4).map(word).fold(0_u128, u128::wrapping_add) as i128
     };
-    std::array::from_fn(|k| number(&words[4 * k..4 * k + 4]))
+    std::array::from_fn(|k| number(&words[WORDS * k..][..WORDS]))
 }
 
 /// Loads on solids, by the number of the solid in the scene; solids without a load may be missing.
@@ -155,7 +157,7 @@ pub fn moment<const D: usize>(arm: &[f64; D], force: &[f64; D]) -> [f64; 3] {
 }
 
 /// The nearest whole number. What is out of range has diverged, which the watch for faults reports.
-fn whole(x: f64) -> i128 {
+pub fn whole(x: f64) -> i128 {
     // Much faster than `round` and a cast to 128 bits.
     i128::from((x + 0.5_f64.copysign(x)) as i64)
 }

@@ -99,6 +99,36 @@ impl<const D: usize> Model<D> {
         self.support_radius + self.skin
     }
 
+    /// Pressure (Pa) at a density (kg/m³), not below the lowest one.
+    #[inline]
+    pub fn pressure(&self, density: f64) -> f64 {
+        self.equation_of_state.pressure(density).max(self.lowest_pressure)
+    }
+
+    /// Elastic energy per mass at a density, J/kg: that of the equation of state, and beyond the density at
+    /// which the fluid cavitates what its lowest pressure stores.
+    pub fn elastic_energy(&self, density: f64) -> f64 {
+        let eos = &self.equation_of_state;
+        if eos.pressure(density) >= self.lowest_pressure {
+            return eos.elastic_energy(density);
+        }
+        let torn = eos.density(self.lowest_pressure);
+        eos.elastic_energy(torn) + self.lowest_pressure * (1.0 / torn - 1.0 / density)
+    }
+
+    /// Gravity along the open axes, which has a potential, and along the periodic ones, which drives, m/s².
+    pub fn parts_of_gravity(&self) -> ([f64; D], [f64; D]) {
+        let open = std::array::from_fn(|k| self.periods[k].map_or(self.gravity[k], |_| 0.0));
+        (open, std::array::from_fn(|k| self.gravity[k] - open[k]))
+    }
+
+    /// Potential energy per mass at `x` (m), zero at the origin, J/kg.
+    #[inline]
+    pub fn potential_energy(&self, x: &[f64; D]) -> f64 {
+        let open = self.parts_of_gravity().0;
+        -(0..D).map(|k| open[k] * x[k]).sum::<f64>()
+    }
+
     /// Whether a point is inside the domain. NaN is outside.
     pub fn contains(&self, x: &[f64; D]) -> bool {
         let (lower, upper) = &self.domain;

@@ -1,5 +1,6 @@
 //! A scheme: what is summed over which neighbours in the passes of a step.
 
+use crate::energy::Sink;
 use crate::groups::{BoxedSum, fluid_sum, wall_sum};
 use crate::kernel_shape::KernelShape;
 use crate::terms::{
@@ -30,6 +31,20 @@ pub struct Scheme<const D: usize, S> {
     pub wall_shifting: Option<BoxedSum<D, S, VectorSum<D>>>,
     /// How support radii grow from place to place, if they vary and there are walls.
     pub radius_slope: Option<BoxedSum<D, S, SlopeSum<D>>>,
+    /// What an energy budget is made of, if somebody asks for one.
+    pub accounts: Option<Accounts<D, S>>,
+}
+
+/// Sums of single terms that the sums of a scheme hold too, so that the energy that each takes can be told.
+/// They move nothing: the bits of a run with and without them are the same.
+#[derive(Debug)]
+pub struct Accounts<const D: usize, S> {
+    /// dv/dt from the viscosity of the fluid, and what it counts as.
+    pub viscosity: Option<(Sink, BoxedSum<D, S, Acceleration<D>>)>,
+    /// dρ/dt from the diffusion of the density.
+    pub diffusion: Option<BoxedSum<D, S, DensityRate>>,
+    /// dv/dt from the pressure of walls without their dissipation.
+    pub undamped_walls: Option<BoxedSum<D, S, Acceleration<D>>>,
 }
 
 impl<const D: usize, S: Real> Scheme<D, S> {
@@ -49,6 +64,7 @@ impl<const D: usize, S: Real> Scheme<D, S> {
                 shifting: None,
                 wall_shifting: None,
                 radius_slope: None,
+                accounts: None,
             },
             kernel: PhantomData,
         }
@@ -105,6 +121,45 @@ impl<const D: usize, S: Real, K: Kernel> SchemeBuilder<D, S, K> {
     #[must_use]
     pub fn radius_slope(mut self, slope: impl PairTerm<D, Slope> + 'static) -> Self {
         self.scheme.radius_slope = Some(fluid_sum::<D, S, Slope, K, _>(slope));
+        self
+    }
+
+    /// An energy budget, whose terms are named one by one.
+    #[must_use]
+    pub fn accounts(mut self) -> Self {
+        self.scheme.accounts =
+            Some(Accounts { viscosity: None, diffusion: None, undamped_walls: None });
+        self
+    }
+
+    /// The viscosity among the terms of the force, and what its energy counts as.
+    #[must_use]
+    pub fn account_viscosity(
+        mut self,
+        sink: Sink,
+        term: impl PairTerm<D, Pressure> + 'static,
+    ) -> Self {
+        if let Some(accounts) = &mut self.scheme.accounts {
+            accounts.viscosity = Some((sink, fluid_sum::<D, S, Pressure, K, _>(term)));
+        }
+        self
+    }
+
+    /// The diffusion among the terms of the density.
+    #[must_use]
+    pub fn account_diffusion(mut self, term: impl PairTerm<D, Deviation> + 'static) -> Self {
+        if let Some(accounts) = &mut self.scheme.accounts {
+            accounts.diffusion = Some(fluid_sum::<D, S, Deviation, K, _>(term));
+        }
+        self
+    }
+
+    /// The force of walls without their dissipation.
+    #[must_use]
+    pub fn account_walls(mut self, undamped: impl WallTerm<D, Pressure> + 'static) -> Self {
+        if let Some(accounts) = &mut self.scheme.accounts {
+            accounts.undamped_walls = Some(wall_sum::<D, S, Pressure, K, _>(undamped));
+        }
         self
     }
 

@@ -1,12 +1,14 @@
 //! A simulation: the particles of one rank and the loop over the steps.
 
 use crate::bodies::{Bodies, Wrench};
+use crate::energy::{Sink, Taken, open_books};
 use crate::error::RunError;
 use crate::lio::{Copies, Exchange, Extremes, lio_pass};
 use crate::loads::{LoadScale, Loads, on_all_ranks};
 use crate::model::{Model, OnLost};
 use crate::passes::{DensityPass, ForcePass, kicked};
-use crate::rank::Rank;
+use crate::rank::costs::TOLERATED_IMBALANCE;
+use crate::rank::{Gone, Rank, first_of_all};
 use crate::records::Encoder;
 use crate::scheme::Scheme;
 use crate::space::PairScale;
@@ -108,6 +110,8 @@ pub struct Simulation<'a, const D: usize, S: Real> {
     load_scale: Option<LoadScale>,
     /// Loads of this rank's fluid in the last step.
     loads: Loads,
+    /// Energy that terms took from the fluid of this rank in the last step, if somebody keeps books.
+    energy: Option<Taken>,
     bodies: Bodies<D>,
 }
 
@@ -161,6 +165,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             timings: Timings::default(),
             load_scale: None,
             loads: Loads::NONE,
+            energy: None,
             bodies: Bodies::default(),
             model,
         })
@@ -302,6 +307,12 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         &self.loads
     }
 
+    /// Energy that terms took from the fluid of this rank in the last step; nothing unless the scheme
+    /// keeps [accounts](crate::scheme::Accounts).
+    pub fn energy_taken(&self) -> Option<&Taken> {
+        self.energy.as_ref()
+    }
+
     /// What is summed over which neighbours.
     pub fn scheme(&self) -> &Scheme<D, S> {
         &self.scheme
@@ -316,6 +327,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
     /// `report`, also returns the state at the present time. Collective.
     pub fn step(&mut self, report: bool) -> Result<Option<FullStep<D>>, RunError> {
         self.just_rebuilt = self.lists_due;
+        self.energy = open_books(&self.model, &self.scheme);
         if self.lists_due {
             self.rebuild()?;
         }
@@ -347,10 +359,13 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             self.renew_rank()?;
         }
         let time = self.clock.time;
-        self.lost.extend(gone.iter().map(|&(id, position)| Lost { id, position, time }));
+        self.lost.extend(gone.iter().map(|one| Lost { id: one.id, position: one.position, time }));
+        if let Some(taken) = &mut self.energy {
+            gone.iter().for_each(|one| taken.add(Sink::Lost, [one.energy, 0.0]));
+        }
         if self.model.on_lost == OnLost::Stop {
-            let first = gone.iter().min_by_key(|(id, _)| *id);
-            if let Some((id, position)) = first_of_all(&self.comm, first)? {
+            let first = gone.iter().min_by_key(|one| one.id).map(|one| (one.id, one.position));
+            if let Some((id, position)) = first_of_all(&self.comm, first.as_ref())? {
                 let position = position.to_vec();
                 let (lower, upper) = self.model.domain;
                 let (lower, upper) = (lower.to_vec(), upper.to_vec());
@@ -365,7 +380,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
 
     /// Divides space anew if that is due, and brings the rank up to date. Returns the particles that
     /// have left the domain.
-    fn renew_rank(&mut self) -> Result<Vec<(u64, [f64; D])>, RunError> {
+    fn renew_rank(&mut self) -> Result<Vec<Gone<D>>, RunError> {
         let review = self.balancer.review(&self.comm, self.load())?;
         let division = review.divide.then_some(review.rate);
         let encoder = self.encoder();
@@ -429,6 +444,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             view.density_rate,
         )?;
         self.exposed += exposed;
+        self.book(own.effects.energy.as_deref());
         self.pending = Extremes { fault: own.extremes.fault, ..Extremes::NONE };
         let [extremes @ .., request] = maxima;
         self.request.1 = request;
@@ -463,8 +479,16 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         )?;
         self.exposed += exposed;
         self.pending = self.pending.max(own.extremes);
-        self.loads = own.loads;
+        self.book(own.effects.energy.as_deref());
+        self.loads = own.effects.loads;
         Ok(())
+    }
+
+    /// Notes energy that terms took in a pass.
+    fn book(&mut self, taken: Option<&Taken>) {
+        if let (Some(all), Some(more)) = (&mut self.energy, taken) {
+            all.join(more);
+        }
     }
 
     /// Moves the bodies on, from the loads of the fluid of all ranks. Collective.
@@ -555,10 +579,6 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
     }
 }
 
-/// Largest over mean cost of a rank that is tolerated beyond the best that a partition reaches. A
-/// new partition is cheap beside the rebuild that it is part of, so this is tight.
-const TOLERATED_IMBALANCE: f64 = 1.02;
-
 /// A step this much shorter than the acoustic one means that the run has failed.
 const SMALLEST_STEP: f64 = 1e-5;
 
@@ -578,22 +598,4 @@ fn at_start<const D: usize>(
     comm.max_f64(&mut maxima)?;
     let all = Extremes::from_array(maxima);
     Ok(Extremes { acceleration2: square(&model.gravity), ..all })
-}
-
-/// The particle with the lowest id over all ranks, from the one that each rank names.
-fn first_of_all<const D: usize>(
-    comm: &dyn Communicator,
-    mine: Option<&(u64, [f64; D])>,
-) -> Result<Option<(u64, [f64; D])>, RunError> {
-    let mut bytes = Vec::new();
-    if let Some((id, x)) = mine {
-        bytes.extend_from_slice(&id.to_ne_bytes());
-        bytes.extend_from_slice(bytemuck::cast_slice(x));
-    }
-    let all = comm.all_gather(&bytes)?;
-    let named = all.iter().filter(|bytes| !bytes.is_empty()).map(|bytes| {
-        let (id, x) = bytes.split_at(8);
-        (bytemuck::pod_read_unaligned(id), bytemuck::pod_read_unaligned(x))
-    });
-    Ok(named.min_by_key(|(id, _): &(u64, [f64; D])| *id))
 }

@@ -73,6 +73,6 @@ fn advance_task<const D: usize, S: Real, P: Pass<D, S>>(
     if block.is_empty() {
         return Outcome::NONE;
     }
-    let loads = pass.flux(old, block);
-    Outcome { extremes: pass.update(old, block), loads }
+    let effects = pass.flux(old, block);
+    Outcome { extremes: pass.update(old, block), effects }
 }

@@ -1,6 +1,6 @@
 use crate::block::Block;
-use crate::lio::{Extremes, Pass};
-use crate::loads::Loads;
+use crate::energy::open_books;
+use crate::lio::{Effects, Extremes, Pass};
 use crate::model::Model;
 use crate::passes::{Surroundings, add};
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, motion, record};
@@ -31,6 +31,16 @@ pub struct DensityPass<'a, const D: usize, S> {
     pub speed: f64,
 }
 
+impl<const D: usize, S: Real + Pod> DensityPass<'_, D, S> {
+    /// The density at the new positions as the rate gives it, and as it becomes (kg/m³).
+    #[inline]
+    pub(super) fn next_density(&self, density: f64, rate: &DensityRate) -> [f64; 2] {
+        let density0 = self.model.equation_of_state.density0();
+        let moved = density + self.dt * rate.rate;
+        [moved, if is_spray(rate) && moved < density0 { density0 } else { moved }]
+    }
+}
+
 impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
     type Rate = DensityRate;
     /// Pressure, weight, density deviation.
@@ -40,29 +50,41 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
         self.around.near_fluid.clusters()
     }
 
-    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Loads {
+    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Effects {
+        let mut books = open_books(self.model, self.scheme);
+        let mut of_walls = vec![DensityRate::default(); books.as_ref().map_or(0, |_| block.len())];
         self.around.sum_fluid(&*self.scheme.density, old, block);
         if let Some(sum) = &self.scheme.wall_density {
             let (targets, rates) = block.targets();
-            self.around.of_walls(&**sum, old, &targets, |_| true, |_, own| add(rates, own));
+            self.around.of_walls(
+                &**sum,
+                old,
+                &targets,
+                |_| true,
+                |_, own| {
+                    add(rates, own);
+                    // Empty without a budget.
+                    add(&mut of_walls, own);
+                },
+            );
+        }
+        if let (Some(accounts), Some(taken)) = (&self.scheme.accounts, &mut books) {
+            self.book(accounts, &of_walls, old, block, taken);
         }
         if let Some(sum) = &self.scheme.shifting {
             self.around.crowding(&**sum, self.scheme.wall_shifting.as_deref(), old, block);
         }
-        Loads::NONE
+        Effects { energy: books.map(Box::new), ..Effects::NONE }
     }
 
     fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Extremes {
-        let (eos, encoder) = (&self.model.equation_of_state, &self.encoder);
-        let density0 = eos.density0();
+        let encoder = &self.encoder;
+        let density0 = self.model.equation_of_state.density0();
         let mut fault = 0.0;
         let old = &old[block.first..][..block.len()];
         for (k, old) in old.iter().enumerate() {
             let rate = &block.rates[k];
-            let mut density = block.density[k] + self.dt * rate.rate;
-            if is_spray(rate) && density < density0 {
-                density = density0;
-            }
+            let [_, density] = self.next_density(block.density[k], rate);
             block.lowest_wall_pressure[k] =
                 if is_inside(rate) { self.model.lowest_pressure } else { 0.0 };
             // Written so that NaN is a fault too.
@@ -78,7 +100,7 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
             block.density[k] = density;
             block.new[k] = record(
                 motion(old),
-                S::from_f64(eos.pressure(density).max(self.model.lowest_pressure)),
+                S::from_f64(self.model.pressure(density)),
                 encoder.weight(block.mass[k] / density),
             );
         }

@@ -1,8 +1,10 @@
 use crate::block::Block;
 use crate::bodies::Bodies;
-use crate::lio::{Extremes, Pass};
+use crate::energy::{Sink, open_books};
+use crate::lio::{Effects, Extremes, Pass};
 use crate::loads::{LoadScale, Loads, Part, moment};
 use crate::model::Model;
+use crate::passes::accounts::Share;
 use crate::passes::{Surroundings, add};
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, record};
 use crate::scheme::Scheme;
@@ -59,18 +61,20 @@ fn felt_gradient<const D: usize>(
 
 impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
     /// Adds a part of the accelerations by walls, and of the loads on them. Walls along which the fluid
-    /// slips have no friction.
+    /// slips have no friction. `shares` are for the energy budget, if there is one.
     fn add_walls(
         &self,
         part: Part,
         old: &[Record<S>],
         block: &mut Block<'_, D, S, Acceleration<D>>,
         loads: &mut Loads,
+        shares: &mut Vec<Share<D>>,
     ) {
-        let sum = match part {
-            Part::Pressure => &self.scheme.wall_force,
-            Part::Friction => &self.scheme.wall_friction,
+        let (sum, sink) = match part {
+            Part::Pressure => (&self.scheme.wall_force, Sink::WallDamping),
+            Part::Friction => (&self.scheme.wall_friction, Sink::WallFriction),
         };
+        let keeps_books = self.scheme.accounts.is_some();
         let Some(sum) = sum else { return };
         let acts = |wall: &WallSet<D, S>| match part {
             Part::Pressure => true,
@@ -79,6 +83,9 @@ impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
         let (targets, rates) = block.targets();
         self.around.of_walls(&**sum, old, &targets, acts, |wall, own| {
             add(rates, own);
+            if keeps_books {
+                shares.push(Share { sink, frame: wall.frame().copied(), rates: own.to_vec() });
+            }
             let (Some(scale), Some(solid)) = (&self.loads, self.model.solid(wall.solid)) else {
                 return;
             };
@@ -112,12 +119,16 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for ForcePass<'_, D, S> {
         self.around.near_fluid.clusters()
     }
 
-    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Acceleration<D>>) -> Loads {
-        let mut loads = Loads::NONE;
+    fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Acceleration<D>>) -> Effects {
+        let (mut loads, mut shares) = (Loads::NONE, Vec::new());
         self.around.sum_fluid(&*self.scheme.force, old, block);
-        self.add_walls(Part::Pressure, old, block, &mut loads);
-        self.add_walls(Part::Friction, old, block, &mut loads);
-        loads
+        self.add_walls(Part::Pressure, old, block, &mut loads, &mut shares);
+        self.add_walls(Part::Friction, old, block, &mut loads, &mut shares);
+        let mut books = open_books(self.model, self.scheme);
+        if let (Some(accounts), Some(taken)) = (&self.scheme.accounts, &mut books) {
+            self.book(accounts, shares, old, block, taken);
+        }
+        Effects { loads, energy: books.map(Box::new) }
     }
 
     fn update(&self, old: &[Record<S>], block: &mut Block<'_, D, S, Acceleration<D>>) -> Extremes {

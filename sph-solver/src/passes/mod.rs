@@ -14,6 +14,7 @@
 //! The last kick of a step, the first kick of the next one and its drift are one update, at the end
 //! of the force pass. Between steps a run therefore holds `x^{n+1}`, `v^{n+½}`, `ρ^n` and `dt_n`.
 
+mod accounts;
 mod density;
 mod force;
 
@@ -85,6 +86,21 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
         }
     }
 
+    /// The sum over the fluid neighbours of every target of a block, apart from its rates.
+    fn of_fluid<R: Rate, Q>(
+        &self,
+        sum: &dyn GroupSum<D, S, R>,
+        old: &[Record<S>],
+        block: &Block<'_, D, S, Q>,
+    ) -> Vec<R> {
+        let mut sums = vec![R::default(); block.len()];
+        let list = self.near_fluid;
+        let (scale, halves) = (self.scale, self.halves.map(|all| (all, all)));
+        let view = GroupView { targets: old, sources: old, list, scale, halves, beside: None };
+        sum.sum(view, block.first, block.density, &mut sums);
+        sums
+    }
+
     /// Sets the shifts of a block to the sums of how crowded fluid and walls are.
     fn crowding<R>(
         &self,
@@ -93,11 +109,7 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
         old: &[Record<S>],
         block: &mut Block<'_, D, S, R>,
     ) {
-        let mut sums = vec![VectorSum::default(); block.len()];
-        let list = self.near_fluid;
-        let (scale, halves) = (self.scale, self.halves.map(|all| (all, all)));
-        let view = GroupView { targets: old, sources: old, list, scale, halves, beside: None };
-        fluid.sum(view, block.first, block.density, &mut sums);
+        let mut sums = self.of_fluid(fluid, old, block);
         if let Some(wall) = wall {
             let (targets, _) = block.targets();
             self.of_walls(wall, old, &targets, |_| true, |_, own| add(&mut sums, own));

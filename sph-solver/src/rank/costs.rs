@@ -7,3 +7,6 @@ pub(crate) const WALL_COST: f64 = 0.5;
 pub(crate) const FLUID_COST: f64 = 20.0;
 /// Neighbours of a fluid particle before there are lists.
 pub(crate) const USUAL_NEIGHBOURS: usize = 90;
+/// Largest over mean cost of a rank that is tolerated beyond the best that a partition reaches. A
+/// new partition is cheap beside the rebuild that it is part of, so this is tight.
+pub(crate) const TOLERATED_IMBALANCE: f64 = 1.02;

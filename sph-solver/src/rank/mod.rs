@@ -1,9 +1,13 @@
 //! The particles of one rank in the layout that the passes work on.
 
 pub(crate) mod costs;
+mod first;
 mod rebuild;
 mod traveller;
 mod walls;
+
+pub(crate) use first::first_of_all;
+pub use rebuild::Gone;
 
 use crate::block::FluidColumns;
 use crate::groups::GroupView;

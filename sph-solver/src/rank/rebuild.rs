@@ -28,6 +28,17 @@ const LOOSE: f64 = 0.95;
 /// records wrap around after 256 support radii: what is far must not seem near.
 const JUMP: f64 = 8.0;
 
+/// A particle that has left the domain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gone<const D: usize> {
+    /// Global id.
+    pub id: u64,
+    /// Where it was, m.
+    pub position: [f64; D],
+    /// Kinetic, potential and elastic energy that it had, J.
+    pub energy: f64,
+}
+
 impl<const D: usize, S: Real + Pod> Rank<D, S> {
     /// Brings the particles to their owners, finds the overlap zone, sorts, and builds the lists.
     /// Returns the particles that have left the domain; they are gone. With `division`, space is
@@ -41,7 +52,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         encoder: &Encoder<D, S>,
         division: Option<f64>,
         bodies: &Bodies<D>,
-    ) -> Result<Vec<(u64, [f64; D])>, RunError> {
+    ) -> Result<Vec<Gone<D>>, RunError> {
         let gone = self.remove_outside(model);
         let mut turned = false;
         for x in &mut self.state.position {
@@ -80,7 +91,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         Ok(gone)
     }
 
-    fn remove_outside(&mut self, model: &Model<D>) -> Vec<(u64, [f64; D])> {
+    fn remove_outside(&mut self, model: &Model<D>) -> Vec<Gone<D>> {
         let state = &self.state;
         let outside = |i: usize| !model.contains(&state.position[i]);
         if !(0..state.len()).any(outside) {
@@ -88,8 +99,13 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         }
         let (gone, kept): (Vec<u32>, Vec<u32>) =
             (0..state.len() as u32).partition(|&i| outside(i as usize));
-        let gone =
-            gone.iter().map(|&i| (state.id[i as usize], state.position[i as usize])).collect();
+        let one = |&i: &u32| {
+            let i = i as usize;
+            let (position, speed2) = (state.position[i], square(&state.velocity[i]));
+            let stored = model.elastic_energy(state.density[i]) + model.potential_energy(&position);
+            Gone { id: state.id[i], position, energy: state.mass[i] * (0.5 * speed2 + stored) }
+        };
+        let gone = gone.iter().map(one).collect();
         self.state.keep(&kept);
         gone
     }
@@ -261,6 +277,10 @@ fn level_of_ratio(ratio: f64) -> usize {
         level += 1;
     }
     level as usize
+}
+
+fn square<const D: usize>(v: &[f64; D]) -> f64 {
+    v.iter().map(|c| c * c).sum()
 }
 
 /// Receives the state of the outer particles and sorts them: by cell, then by id.

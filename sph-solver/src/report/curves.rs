@@ -179,6 +179,15 @@ fn readings(probe: &str, table: &Table) -> Vec<Group> {
     groups
 }
 
+/// What terms took, as far as they took anything, and what no term explains.
+fn budget(table: &Table) -> Group {
+    let sinks = table.names.iter().filter(|name| name.starts_with("to_"));
+    let names: Vec<&str> = sinks.map(String::as_str).chain(["residual"]).collect();
+    let mut group = group(table, "Where energy went since the start".into(), "to_", &names);
+    group.columns.retain(|(name, values)| name == "residual" || values.iter().any(|v| *v != 0.0));
+    group
+}
+
 fn energies(table: &Table) -> Vec<Group> {
     let since_start = |name: &str| {
         let values = table.column(name).unwrap_or_default();
@@ -196,6 +205,7 @@ fn energies(table: &Table) -> Vec<Group> {
     let title = "Energies, change since the start".into();
     vec![
         Group { title, unit: unit(table, "kinetic"), columns },
+        budget(table),
         group(table, "Momentum".into(), "momentum_", &momentum),
         group(table, "Largest compression".into(), "", &["compression"]),
         group(table, "Largest speed".into(), "", &["speed"]),
@@ -239,6 +249,18 @@ mod tests {
         let energies = &groups("energies", &table)[0];
         let last: Vec<_> = energies.columns.iter().map(|(n, v)| (n.as_str(), v[1])).collect();
         assert_eq!(last, [("kinetic", 8.0), ("potential", -10.0), ("elastic", 0.5), ("sum", -1.5)]);
+    }
+
+    #[test]
+    fn a_budget_shows_the_terms_that_took_something() {
+        let titles = [("time", "s"), ("to_viscosity", "J"), ("to_spray", "J"), ("residual", "J")];
+        let with = table(&titles, &[&[0.0, 0.0, 0.0, 0.0], &[0.1, 8.0, 0.0, 0.0]]);
+        let groups = groups("energies", &with);
+        let budget = groups.iter().find(|g| g.title.starts_with("Where")).unwrap();
+        let names: Vec<_> = budget.columns.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!((names, budget.unit.as_str()), (vec!["viscosity", "residual"], "J"));
+        let without = table(&[("time", "s"), ("kinetic", "J")], &[&[0.0, 1.0]]);
+        assert!(super::groups("energies", &without).iter().all(|g| !g.title.starts_with("Where")));
     }
 
     #[test]

@@ -42,6 +42,10 @@ pub fn key_figures(runs: &[Results]) -> String {
     }
     row("Energy at the end: kinetic", &|run| energy(run, "kinetic"));
     row("Energy at the end: potential", &|run| energy(run, "potential"));
+    row("Largest share of the energy that no term explains", &|run| {
+        let share = run.number("/energy_budget/largest_residual_share")?;
+        Some(format!("{} %", rounded(100.0 * share)))
+    });
     row("Largest compression at the end", &|run| {
         Some(format!("{} %", rounded(100.0 * run.number("/compression")?)))
     });

@@ -54,6 +54,9 @@ pub struct Kept<const D: usize> {
     pub loads: Vec<f64>,
     /// Solids that move, as [`Bodies::save`](crate::bodies::Bodies::save) gave them.
     pub bodies: Vec<f64>,
+    /// The energy budget, as [`EnergyLog::save`](super::energy_log::EnergyLog::save) gave it; nothing
+    /// without one.
+    pub energy: Vec<f64>,
 }
 
 /// Whole checkpoints that are kept; older ones are removed.
@@ -70,7 +73,7 @@ pub fn save<const D: usize>(
     plan: &RunPlan<D>,
     kept: Kept<D>,
 ) -> Result<(), RunError> {
-    let Kept { fluid, clock, progress, loads, bodies } = kept;
+    let Kept { fluid, clock, progress, loads, bodies, energy } = kept;
     let mut columns = fluid.into_columns();
     gather_by_id(comm, &mut columns, |columns| columns.0.clone())?;
     if comm.rank() != 0 {
@@ -94,6 +97,7 @@ pub fn save<const D: usize>(
         .with_attribute("lost_particles", progress.lost)
         .with_attribute("loads", loads)
         .with_attribute("bodies", bodies)
+        .with_attribute("energy_budget", energy)
         .with_attribute("identity", plan.identity.particles.to_text())
         .with_attribute("settings", plan.identity.settings.to_text())
         .with_attribute("simd", sph_kernels::simd_level())
@@ -116,6 +120,8 @@ pub struct Loaded<const D: usize> {
     pub loads: Vec<f64>,
     /// Solids that move, as [`Bodies::save`](crate::bodies::Bodies::save) gave them.
     pub bodies: Vec<f64>,
+    /// The energy budget, as [`EnergyLog::save`](super::energy_log::EnergyLog::save) gave it.
+    pub energy: Vec<f64>,
 }
 
 /// Particles of this rank, clock and progress from the latest whole checkpoint. The number of ranks
@@ -204,7 +210,8 @@ fn load_here<const D: usize>(
     };
     let loads = attributes.f64_array("loads")?.to_vec();
     let bodies = attributes.f64_array("bodies")?.to_vec();
-    Ok(Loaded { state, clock, progress, loads, bodies })
+    let energy = attributes.f64_array("energy_budget")?.to_vec();
+    Ok(Loaded { state, clock, progress, loads, bodies, energy })
 }
 
 /// Notes what is not as it was when the checkpoint was written.

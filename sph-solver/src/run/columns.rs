@@ -11,7 +11,7 @@ pub fn of_table<const D: usize>(scene: &Scene, table: &str) -> Vec<&'static str>
         columns.into_iter().map(|(name, _)| name).collect()
     };
     if table == "energies" {
-        return names(energy_columns(D));
+        return names(energy_columns(D, scene.output.energy_budget));
     }
     let named = |prefix: &str| table.strip_prefix(prefix);
     let of_name = |name: &str| scene.probe.iter().find(|probe| probe.name.as_str() == name);

@@ -3,6 +3,7 @@
 use super::checkpoints::{self, Kept, Progress};
 use super::cpu_time::cpu_seconds;
 use super::digest::Digest;
+use super::energy_log::{EnergyLog, EnergyRow, Worst};
 use super::files::Files;
 use super::gather::gather_by_id;
 use super::load_log::{LoadLog, LoadTotal};
@@ -11,6 +12,7 @@ use super::samples::{self, Budget};
 use super::schedule::Schedule;
 use super::stop::StopReason;
 use crate::bodies::Bodies;
+use crate::energy::EnergyScale;
 use crate::error::RunError;
 use crate::loads::LoadScale;
 use crate::model::Model;
@@ -57,6 +59,8 @@ pub struct Finished<const D: usize> {
     pub time_step: f64,
     /// Particles taken out, on all ranks, over the whole run.
     pub lost: u64,
+    /// The energy budget over the whole run, if there is one: at the end, and where it was worst.
+    pub energy: Option<(EnergyRow, Worst)>,
     /// Loads on the solids over the whole run, by name.
     pub loads: Vec<(String, LoadTotal)>,
     /// Snapshots written by this process.
@@ -97,12 +101,22 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
     let cpu_start = cpu_seconds();
     let solids = model.solids.len();
     let mut loads = LoadLog::new(solids, LoadScale::of_model(&model));
+    let mut energy = plan.energy_budget.then(|| EnergyLog::new(EnergyScale::of_model(&model)));
     let (state, clock, progress) = if plan.resume {
         drop(state);
         let loaded = checkpoints::load(comm, plan)?;
         loads.restore(&loaded.loads);
         if !bodies.restore(&loaded.bodies) {
             return Err(RunError::OtherBodies { path: plan.out.clone() });
+        }
+        if let Some(log) = &mut energy
+            && !log.restore(&loaded.energy, comm.rank() == 0)
+            && comm.rank() == 0
+        {
+            plan.notes.add(format!(
+                "the checkpoint has no energy budget: that of this run counts from t = {} s on",
+                loaded.clock.time
+            ));
         }
         (loaded.state, Some(loaded.clock), loaded.progress)
     } else {
@@ -132,12 +146,14 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
         checkpoints: progress.checkpoints,
         lost: progress.lost,
         loads,
+        energy,
         first_budget: None,
         kept: None,
         saved: None,
         fast: false,
         fastest: (0.0, 0.0),
         compressed: false,
+        open: false,
     };
     let mut stopping = None;
     let mut simulation =
@@ -168,14 +184,18 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
         }
         simulation.ask(StopReason::to_number(plan.stop.reason()));
         let time_step = simulation.time_step();
-        let report = last || out.snapshots.due(time) || out.samples.due(time);
+        let starts = out.energy.as_ref().is_some_and(EnergyLog::wants_start);
+        let report = last || starts || out.snapshots.due(time) || out.samples.due(time);
         let full = simulation.step(report)?;
         if solids > 0 {
             out.loads.record(comm, simulation.loads(), time_step, simulation.time_step())?;
         }
+        if let (Some(log), Some(taken)) = (&mut out.energy, simulation.energy_taken()) {
+            log.record(taken);
+        }
         out.lost(&mut simulation, files.as_mut())?;
         if let Some(full) = full {
-            let budget = out.report(&simulation, &full, last, files.as_mut())?;
+            let (budget, energy) = out.report(&simulation, &full, last, files.as_mut())?;
             if last {
                 let first = out.first_budget.unwrap_or(budget);
                 if plan.checkpoints.is_some() {
@@ -189,6 +209,7 @@ pub fn drive<'a, const D: usize, S: Real + Pod>(
                     budgets: (first, budget),
                     time_step,
                     lost: out.lost,
+                    energy: energy.zip(out.energy.as_ref().map(EnergyLog::worst)),
                     loads,
                     snapshots: files.map_or(0, |files| files.snapshots()),
                     resumed_at,
@@ -240,6 +261,7 @@ struct Outputs<'a, const D: usize> {
     checkpoints: Schedule,
     lost: u64,
     loads: LoadLog,
+    energy: Option<EnergyLog>,
     first_budget: Option<Budget<D>>,
     /// State of the last rebuild, unless it is in a checkpoint.
     kept: Option<Kept<D>>,
@@ -251,6 +273,8 @@ struct Outputs<'a, const D: usize> {
     fastest: (f64, f64),
     /// Whether the fluid has been called too compressed.
     compressed: bool,
+    /// Whether it has been said that the energy budget does not close.
+    open: bool,
 }
 
 /// Flows faster than this fraction of the sound speed are called too fast: the density then varies
@@ -260,6 +284,9 @@ const FASTEST_MACH: f64 = 0.15;
 /// A density that differs by more than this fraction from that at rest is called too compressed: what
 /// is simulated is hardly a liquid any more.
 const LARGEST_COMPRESSION: f64 = 0.03;
+
+/// A larger share of the energy than this that no term explains casts doubt on all results.
+const LARGEST_RESIDUAL: f64 = 0.03;
 
 impl<const D: usize> Outputs<'_, D> {
     fn walls<S: Real + Pod>(
@@ -323,11 +350,16 @@ impl<const D: usize> Outputs<'_, D> {
             progress: self.progress(),
             loads: self.loads.save(self.comm)?,
             bodies: simulation.bodies().save(),
+            energy: self.save_energy()?,
         };
         checkpoints::save(self.comm, self.plan, kept)?;
         self.saved = Some(clock.step);
         self.kept = None;
         Ok(())
+    }
+
+    fn save_energy(&self) -> Result<Vec<f64>, RunError> {
+        self.energy.as_ref().map_or_else(|| Ok(Vec::new()), |log| log.save(self.comm))
     }
 
     fn progress(&self) -> Progress {
@@ -346,8 +378,8 @@ impl<const D: usize> Outputs<'_, D> {
         let mut fluid = self.kept.take().map_or_else(State::default, |kept| kept.fluid);
         fluid.clone_from(&simulation.rank().state);
         let loads = self.loads.save(self.comm)?;
-        let bodies = simulation.bodies().save();
-        self.kept = Some(Kept { fluid, clock, progress: self.progress(), loads, bodies });
+        let (bodies, energy) = (simulation.bodies().save(), self.save_energy()?);
+        self.kept = Some(Kept { fluid, clock, progress: self.progress(), loads, bodies, energy });
         Ok(())
     }
 
@@ -417,13 +449,29 @@ impl<const D: usize> Outputs<'_, D> {
         ));
     }
 
+    /// The row of the energy budget; says, once, when it does not close. Collective.
+    fn energy_row(&mut self, time: f64, budget: &Budget<D>) -> Result<Option<EnergyRow>, RunError> {
+        let Some(log) = &mut self.energy else { return Ok(None) };
+        let row = log.row(self.comm, time, budget)?;
+        if self.comm.rank() == 0 && !self.open && row.share.abs() > LARGEST_RESIDUAL {
+            self.open = true;
+            let way = if row.share > 0.0 { "more" } else { "less" };
+            self.plan.notes.add(format!(
+                "at t = {time:.4} s the fluid has {:.1} % {way} energy than it had or was given and no                  term explains: beyond {:.0} % do not believe the results. Try a smaller                  numerics.cfl or spacing",
+                100.0 * row.share.abs(),
+                100.0 * LARGEST_RESIDUAL,
+            ));
+        }
+        Ok(Some(row))
+    }
+
     fn report<S: Real + Pod>(
         &mut self,
         simulation: &Simulation<'_, D, S>,
         full: &FullStep<D>,
         last: bool,
         mut files: Option<&mut Files>,
-    ) -> Result<Budget<D>, RunError> {
+    ) -> Result<(Budget<D>, Option<EnergyRow>), RunError> {
         let _timer = simulation.timings().measure(Phase::Output);
         // A fault in this very step is not known to the other ranks yet.
         simulation.clock()?;
@@ -431,6 +479,7 @@ impl<const D: usize> Outputs<'_, D> {
         let budget = samples::budget(self.comm, model, full)?;
         self.notice_compression(model, full.time, &budget);
         self.first_budget.get_or_insert(budget);
+        let energy = self.energy_row(full.time, &budget)?;
         if last || self.samples.due(full.time) {
             let kernel = &simulation.scheme().kernel;
             let read = |(_, probe)| samples::read(self.comm, model, kernel, full, probe);
@@ -440,7 +489,7 @@ impl<const D: usize> Outputs<'_, D> {
             let errors = reference.map(|known| known.errors(self.comm, model, full)).transpose()?;
             let loads = self.loads.rows(self.comm)?;
             if let Some(files) = files.as_deref_mut() {
-                files.samples(full.time, &budget, &readings)?;
+                files.samples(full.time, &budget, energy.as_ref(), &readings)?;
                 files.loads::<D>(full.time, &loads, &simulation.bodies().kinematics())?;
                 if let Some(errors) = errors {
                     files.errors(full.time, &errors)?;
@@ -463,7 +512,7 @@ impl<const D: usize> Outputs<'_, D> {
             }
             self.snapshots.done(full.time);
         }
-        Ok(budget)
+        Ok((budget, energy))
     }
 }
 

@@ -1,10 +1,12 @@
 //! The files of a run. Only rank 0 writes; every file appears whole or not at all.
 
+use super::energy_log::EnergyRow;
 use super::load_log::LoadRow;
 use super::plan::RunPlan;
 use super::samples::Budget;
 use super::snapshot_choice::SnapshotChoice;
 use crate::bodies::Kinematics;
+use crate::energy::Sink;
 use crate::error::RunError;
 use crate::loads::NUMBERS;
 use crate::model::Model;
@@ -45,31 +47,34 @@ impl Files {
             };
             table
         };
-        let probes = plan.probes.iter().map(|(name, probe)| {
-            let (name, columns) = (format!("probe-{name}"), probe.columns());
-            match (table(&name, &columns), resumed_at) {
-                // The probe reads other things now.
+        let table_or_aside = |name: &str, columns: &[(&str, &str)]| {
+            match (table(name, columns), resumed_at) {
+                // The scene asks for other columns now.
                 (Err(IoError::Text { line: 1, path, .. }), Some(time)) => {
                     let aside = plan.out.join(format!("{name}-until-{time}.csv"));
                     plan.notes.add(format!(
-                        "{} has other columns than probe {name} now: it becomes {}",
+                        "{} has other columns than {name} now: it becomes {}",
                         path.display(),
                         aside.display()
                     ));
                     std::fs::rename(&path, &aside)
                         .map_err(|source| RunError::Folder { path: aside, source })?;
-                    table(&name, &columns)
+                    table(name, columns)
                 }
                 (table, _) => table,
             }
             .map_err(RunError::from)
-        });
+        };
+        let probes = plan
+            .probes
+            .iter()
+            .map(|(name, probe)| table_or_aside(&format!("probe-{name}"), &probe.columns()));
         Ok(Self {
             series: match resumed_at {
                 Some(time) => SnapshotSeries::resume(&plan.out, &plan.name, time)?,
                 None => SnapshotSeries::create(&plan.out, &plan.name)?,
             },
-            energies: table("energies", &energy_columns(D))?,
+            energies: table_or_aside("energies", &energy_columns(D, plan.energy_budget))?,
             probes: probes.collect::<Result<_, _>>()?,
             solids: solids
                 .iter()
@@ -134,11 +139,16 @@ impl Files {
         &mut self,
         time: f64,
         budget: &Budget<D>,
+        energy: Option<&EnergyRow>,
         readings: &[Vec<f64>],
     ) -> Result<(), RunError> {
         let mut row = vec![budget.kinetic, budget.potential, budget.elastic];
         row.extend(budget.momentum);
         row.extend([budget.compression, budget.speed]);
+        if let Some(energy) = energy {
+            row.extend(energy.taken);
+            row.push(energy.residual);
+        }
         self.energies.row(time, &row)?;
         for (table, reading) in self.probes.iter_mut().zip(readings) {
             table.row(time, reading)?;
@@ -284,10 +294,14 @@ fn single_scalars(scalars: &[f64]) -> Vec<f32> {
 const AXES: [(&str, &str); 3] =
     [("momentum_x", "kg m/s"), ("momentum_y", "kg m/s"), ("momentum_z", "kg m/s")];
 
-pub(super) fn energy_columns(dimension: usize) -> Vec<(&'static str, &'static str)> {
+pub(super) fn energy_columns(dimension: usize, budget: bool) -> Vec<(&'static str, &'static str)> {
     let mut columns = vec![("kinetic", "J"), ("potential", "J"), ("elastic", "J")];
     columns.extend(&AXES[..dimension]);
     columns.extend([("compression", "1"), ("speed", "m/s")]);
+    if budget {
+        columns.extend(Sink::ALL.map(|sink| (sink.column(), "J")));
+        columns.push(("residual", "J"));
+    }
     columns
 }
 

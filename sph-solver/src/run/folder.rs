@@ -175,6 +175,7 @@ fn is_table(folder: &Path, name: &str) -> bool {
     if !matches!(stem, "energies" | "lost")
         && !stem.starts_with("probe-")
         && !stem.starts_with("solid-")
+        && !stem.starts_with("energies-until-")
     {
         return false;
     }

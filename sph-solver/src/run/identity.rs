@@ -168,6 +168,9 @@ fn settings(scene: &Scene, end_time: f64, checkpoints: Option<f64>) -> Values {
     interval("output.snapshots", output.snapshots.as_deref().copied());
     interval("output.energies", output.energies.as_deref().copied());
     interval("output.checkpoint_every", checkpoints);
+    if output.energy_budget {
+        values.set("output.energy_budget", &true);
+    }
     if let Some(fields) = &output.fields {
         values.set("output.fields", &fields.iter().map(word).collect::<Vec<_>>().join(", "));
     }

@@ -127,6 +127,7 @@ impl<const D: usize> Launch<D> {
             snapshot_choice: SnapshotChoice::new(output),
             samples: output.energies.as_deref().copied(),
             checkpoints,
+            energy_budget: output.energy_budget,
             probes: scene
                 .probe
                 .iter()
@@ -282,6 +283,7 @@ fn features<const D: usize>(
             _ => Viscosity::None,
         },
         shifting: scene.numerics.scheme == scene::Scheme::DeltaPlus,
+        energy_budget: scene.output.energy_budget,
         walls: particles.kind.last().is_some_and(|&kind| kind > 0),
     }
 }

@@ -5,6 +5,7 @@ pub mod columns;
 pub mod cpu_time;
 pub mod digest;
 pub mod driver;
+mod energy_log;
 pub mod files;
 pub mod folder;
 pub mod gather;

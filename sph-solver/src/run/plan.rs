@@ -32,6 +32,8 @@ pub struct RunPlan<const D: usize> {
     pub samples: Option<f64>,
     /// Seconds between checkpoints.
     pub checkpoints: Option<f64>,
+    /// Whether the tables have an energy budget.
+    pub energy_budget: bool,
     /// Named probes.
     pub probes: Vec<(String, Probe<D>)>,
     /// Fields to compare the fluid with.

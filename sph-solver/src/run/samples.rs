@@ -59,7 +59,7 @@ pub enum Probe<const D: usize> {
 pub struct Budget<const D: usize> {
     /// Kinetic energy, J (J/m in two dimensions, like all of these).
     pub kinetic: f64,
-    /// Potential energy in gravity, zero at the origin, J.
+    /// Potential energy in gravity along the open axes, zero at the origin, J.
     pub potential: f64,
     /// Elastic energy, J.
     pub elastic: f64,
@@ -71,6 +71,8 @@ pub struct Budget<const D: usize> {
     pub compression: f64,
     /// Largest speed, m/s.
     pub speed: f64,
+    /// Lowest potential energy per mass, J/kg.
+    pub lowest: f64,
 }
 
 /// Sums the budget over all ranks. Collective.
@@ -83,8 +85,8 @@ pub fn budget<const D: usize>(
     let n = full.id.len();
     let dot = |a: &[f64; D], b: &[f64; D]| (0..D).map(|k| a[k] * b[k]).sum::<f64>();
     let kinetic = (0..n).map(|i| 0.5 * full.mass[i] * dot(&full.velocity[i], &full.velocity[i]));
-    let potential = (0..n).map(|i| -full.mass[i] * dot(&model.gravity, &full.position[i]));
-    let elastic = (0..n).map(|i| full.mass[i] * eos.elastic_energy(full.density[i]));
+    let potential = (0..n).map(|i| full.mass[i] * model.potential_energy(&full.position[i]));
+    let elastic = (0..n).map(|i| full.mass[i] * model.elastic_energy(full.density[i]));
     let mut sums: Vec<ExactSum> = vec![
         kinetic.collect(),
         potential.collect(),
@@ -97,7 +99,12 @@ pub fn budget<const D: usize>(
     let sums = global_sums(&comm, &sums)?;
     let compression = full.density.iter().map(|d| (d / eos.density0() - 1.0).abs());
     let speed = full.velocity.iter().map(|v| dot(v, v).sqrt());
-    let mut maxima = [compression.fold(0.0, f64::max), speed.fold(0.0, f64::max)];
+    let depth = full.position.iter().map(|x| -model.potential_energy(x));
+    let mut maxima = [
+        compression.fold(0.0, f64::max),
+        speed.fold(0.0, f64::max),
+        depth.fold(f64::NEG_INFINITY, f64::max),
+    ];
     comm.max_f64(&mut maxima)?;
     Ok(Budget {
         kinetic: sums[0],
@@ -107,6 +114,7 @@ pub fn budget<const D: usize>(
         momentum: std::array::from_fn(|k| sums[4 + k]),
         compression: maxima[0],
         speed: maxima[1],
+        lowest: -maxima[2],
     })
 }
 

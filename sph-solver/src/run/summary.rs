@@ -2,8 +2,10 @@
 
 use super::cpu_time::cpu_seconds;
 use super::driver::Finished;
+use super::energy_log::{EnergyRow, Worst};
 use super::load_log::LoadTotal;
 use super::samples::Budget;
+use crate::energy::Sink;
 use crate::error::RunError;
 use crate::simulation::Simulation;
 use crate::timings::Phase;
@@ -11,6 +13,7 @@ use bytemuck::Pod;
 use serde::Serialize;
 use sph_decomp::Communicator;
 use sph_kernels::Real;
+use std::collections::BTreeMap;
 
 /// What the caller of a run knows about it.
 #[derive(Debug, Clone)]
@@ -107,6 +110,9 @@ pub struct Summary {
     pub partitions: u64,
     /// Energies at the start of this process and at the end, J.
     pub energies: Energies,
+    /// Where energy went, if the scene asks for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_budget: Option<EnergyBudget>,
     /// Momentum at the end, kg m/s.
     pub momentum: Vec<f64>,
     /// Largest |ρ/ρ0 − 1| at the end.
@@ -176,6 +182,30 @@ pub struct Energy {
     pub potential: f64,
     /// Elastic energy.
     pub elastic: f64,
+}
+
+/// Where energy went over the whole run, J (J/m in two dimensions).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EnergyBudget {
+    /// What each term took, by the names of the columns of `energies.csv`.
+    pub taken: BTreeMap<&'static str, f64>,
+    /// Energy at the end and all that was taken, less the energy at the start: what no term explains.
+    pub residual: f64,
+    /// The largest residual of any row as a share of the energy that the fluid had or was given.
+    pub largest_residual_share: f64,
+    /// When that was, s.
+    pub largest_residual_time: f64,
+}
+
+impl EnergyBudget {
+    fn of((row, worst): &(EnergyRow, Worst)) -> Self {
+        Self {
+            taken: Sink::ALL.iter().zip(row.taken).map(|(sink, j)| (sink.column(), j)).collect(),
+            residual: row.residual,
+            largest_residual_share: worst.share,
+            largest_residual_time: worst.time,
+        }
+    }
 }
 
 /// Puts the summary together from all ranks; all of them get the same. Collective.
@@ -284,6 +314,7 @@ pub fn summarize<const D: usize, S: Real + Pod>(
         predicted_imbalance: evenness.predicted,
         partitions: evenness.partitions,
         energies: Energies { start: Energy::of(first), end: Energy::of(last) },
+        energy_budget: finished.energy.as_ref().map(EnergyBudget::of),
         momentum: last.momentum.to_vec(),
         compression: last.compression,
         largest_mach: Mach {

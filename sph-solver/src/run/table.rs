@@ -8,14 +8,15 @@ use super::driver::{Start, Status, drive};
 use super::plan::RunPlan;
 use super::summary::{Meta, Summary, summarize};
 use crate::bodies::Bodies;
+use crate::energy::Sink;
 use crate::error::RunError;
 use crate::model::Model;
 use crate::scheme::Scheme;
 use crate::state::State;
 use crate::team::Team;
 use crate::terms::{
-    ArtificialViscosity, Continuity, DeltaContinuity, LaminarViscosity, NoSlip, RadiusSlope,
-    Shifting, SymmetricPressure, WallContinuity, WallPressure,
+    ArtificialViscosity, AtRest, Continuity, DeltaContinuity, LaminarViscosity, NoSlip,
+    RadiusSlope, Shifting, SymmetricPressure, WallContinuity, WallPressure,
 };
 use crate::walls::WallElements;
 use bytemuck::Pod;
@@ -35,6 +36,8 @@ pub struct Features {
     pub shifting: bool,
     /// Whether there are walls.
     pub walls: bool,
+    /// Whether the energy that each term takes is added up.
+    pub energy_budget: bool,
 }
 
 /// Scalar of the pair arithmetic. The state is always in double precision.
@@ -112,7 +115,8 @@ fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) 
         hydrostatic_gradient: model.gravity.map(|g| g * stiffness),
     };
     let pressure = SymmetricPressure;
-    let builder = match (features.viscosity, features.density_diffusion > 0.0) {
+    let diffusive = features.density_diffusion > 0.0;
+    let builder = match (features.viscosity, diffusive) {
         (Viscosity::None, true) => Scheme::of::<K>(diffusion, pressure),
         (Viscosity::None, false) => Scheme::of::<K>(Continuity, pressure),
         (Viscosity::Artificial(alpha), diffusive) => {
@@ -133,6 +137,24 @@ fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) 
             }
         }
     };
+    let builder = if features.energy_budget {
+        let builder = builder.accounts();
+        let builder =
+            if diffusive { builder.account_diffusion(AtRest(diffusion)) } else { builder };
+        match features.viscosity {
+            Viscosity::None => builder,
+            Viscosity::Artificial(alpha) => {
+                let strength = alpha * h * sound_speed * density0;
+                let term = ArtificialViscosity { strength, softening };
+                builder.account_viscosity(Sink::ArtificialViscosity, term)
+            }
+            Viscosity::Laminar(dynamic_viscosity) => {
+                builder.account_viscosity(Sink::Viscosity, LaminarViscosity { dynamic_viscosity })
+            }
+        }
+    } else {
+        builder
+    };
     let shifting = Shifting::<K>::new(model.support_radius, model.spacing);
     let builder = if features.shifting { builder.shifting(shifting) } else { builder };
     if !features.walls {
@@ -143,7 +165,8 @@ fn delta_scheme<const D: usize, S: Real>(model: &Model<D>, features: &Features) 
         None => builder,
     };
     let wall = WallPressure { sound_speed };
-    let builder = builder.walls(WallContinuity, wall);
+    let builder =
+        builder.walls(WallContinuity, wall).account_walls(WallPressure { sound_speed: 0.0 });
     let builder = if features.shifting { builder.wall_shifting(shifting) } else { builder };
     match features.viscosity {
         Viscosity::Laminar(dynamic_viscosity) => {

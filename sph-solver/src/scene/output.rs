@@ -16,6 +16,10 @@ pub struct Output {
     /// the last state.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub energies: Option<At<f64>>,
+    /// Whether `energies.csv` also tells where energy went: what each term of the scheme took since the
+    /// start, and the residual that no term explains. Costs further sums, the results stay the same bits.
+    #[serde(default)]
+    pub energy_budget: bool,
     /// Seconds of simulated time between checkpoints, from which `sph run --resume` goes on. Absent:
     /// none.
     #[schemars(extend("exclusiveMinimum" = 0))]

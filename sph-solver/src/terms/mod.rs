@@ -13,6 +13,7 @@
 //! lies along it, so a [`WallTerm`] has a sum of its own, see [`WallPush`].
 
 mod artificial_viscosity;
+mod at_rest;
 mod continuity;
 mod delta_continuity;
 mod pressure;
@@ -26,6 +27,7 @@ mod wall_pressure;
 mod wall_push;
 
 pub use artificial_viscosity::{ArtificialViscosity, strengthened};
+pub use at_rest::AtRest;
 pub use continuity::Continuity;
 pub use delta_continuity::DeltaContinuity;
 pub use pressure::SymmetricPressure;
