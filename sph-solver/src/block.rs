@@ -152,6 +152,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 pressure_gradient: self.pressure_gradient,
                 position: self.position,
                 frame: None,
+                thin: None,
             },
         };
         (targets, self.rates)

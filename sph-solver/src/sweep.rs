@@ -8,6 +8,7 @@
 //! nor on ranks, nor on the width of the lanes, nor on who shares its cluster.
 
 use crate::bodies::Frame;
+use crate::model::ThinWall;
 use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
 use crate::space::{Metric, PairScale};
 use crate::terms::{
@@ -64,6 +65,8 @@ pub struct Beside<'a, const D: usize> {
     pub position: &'a [[f64; D]],
     /// How the wall moves; none for a wall at rest.
     pub frame: Option<&'a Frame<D>>,
+    /// For a thin solid.
+    pub thin: Option<ThinWall>,
 }
 
 /// Elements of a wall: their records hold the normal in the words of velocity and the depth below
@@ -157,7 +160,7 @@ where
         let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
         let to_q: L = lanes(scale.unit / scale.support_radius);
         let Self { records, list, term, beside, .. } = *self;
-        let Beside { lowest_pressure, pressure_gradient, position: places, frame } = beside;
+        let Beside { lowest_pressure, pressure_gradient, position: places, frame, thin } = beside;
         let last = own.end - 1;
         let of_lanes = |f: &dyn Fn(usize) -> f64| -> L {
             let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f((own.start + l).min(last))));
@@ -178,6 +181,7 @@ where
                 from_fn(|k| target.velocity[k] - of_lanes(&|i| walls[i - own.start][k]));
         }
         let target = &target;
+        let side = thin.map(Side::new);
         let mut total = T::zero();
         for &j in list.sources(cluster) {
             let record = &records[j as usize];
@@ -187,10 +191,47 @@ where
             let distance2 = dot(&offset, &offset);
             let weight = K::slope_shape(distance2.sqrt() * to_q) * L::splat(record[WEIGHT]);
             let depth = L::splat(record[QUANTITY]);
-            let pair = WallPair { offset, distance2, normal, depth, weight, unit, per_unit };
+            let (mut weight, mut squeezed) = (weight, L::zero());
+            if let Some(side) = &side {
+                let height = dot(&offset, &normal) * unit - depth;
+                weight = weight * side.share(height);
+                squeezed = side.squeezed(height);
+            }
+            let pair =
+                WallPair { offset, distance2, normal, depth, weight, squeezed, unit, per_unit };
             term.add(target, &beside, &pair, &mut total);
         }
         *sum = term.finish(target, &total);
+    }
+}
+
+/// What fluid belongs to a side of a thin solid: all that is in front of it or at most so far below its
+/// surface, with a share that falls from one to zero over the second half of that way.
+#[derive(Debug, Clone, Copy)]
+struct Side<L> {
+    below: L,
+    per_half: L,
+    per_first: L,
+}
+
+impl<L: Lanes> Side<L> {
+    #[inline(always)]
+    fn new(wall: ThinWall) -> Self {
+        let ThinWall { below, spacing } = wall;
+        Self { below: lanes(below), per_half: lanes(2.0 / below), per_first: lanes(2.0 / spacing) }
+    }
+
+    /// The share of a target at this height (m) over the surface.
+    #[inline(always)]
+    fn share(&self, height: L) -> L {
+        ((height + self.below) * self.per_half).max(L::zero()).min(lanes(1.0))
+    }
+
+    /// max(0, 1 − z/(dp/2))² of a target at this height z.
+    #[inline(always)]
+    fn squeezed(&self, height: L) -> L {
+        let closer = (lanes::<L>(1.0) - height * self.per_first).max(L::zero());
+        closer * closer
     }
 }
 
@@ -293,5 +334,27 @@ where
         let targets = own.clone();
         self.pairs.add::<K, L>(cluster, targets, &position, &target, self.scale, &mut sum);
         Q::rates(&sum, density, &mut self.rates[own]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_side_of_a_thin_solid_acts_down_to_its_middle() {
+        let side = Side::<f64>::new(ThinWall { below: 0.02, spacing: 0.1 });
+        assert_eq!(
+            [0.3, 0.0, -0.01, -0.02, -0.5].map(|z| side.share(z)),
+            [1.0, 1.0, 1.0, 0.0, 0.0]
+        );
+        assert!((side.share(-0.015) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn it_pushes_harder_from_half_a_spacing_on() {
+        let side = Side::<f64>::new(ThinWall { below: 0.05, spacing: 0.1 });
+        assert_eq!([0.2, 0.05, 0.0].map(|z| side.squeezed(z)), [0.0, 0.0, 1.0]);
+        assert!((side.squeezed(-0.05) - 4.0).abs() < 1e-12);
     }
 }

@@ -8,6 +8,7 @@
 //! nothing to do with it, and the sum over a set is the load on its solid.
 
 use crate::bodies::Frame;
+use crate::model::ThinWall;
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, record};
 use sph_decomp::Columns;
 use sph_geometry::{Domain, Lattice, LatticeError, Solid, wall_elements};
@@ -127,6 +128,17 @@ impl<const D: usize> WallElements<D> {
         }
     }
 
+    /// The point of the surface above every element of its uppermost layer, and the normal there. What
+    /// fills the corner between two sides is no part of that layer.
+    fn surface(&self, spacing: f64) -> Vec<Option<([f64; D], [f64; D])>> {
+        let point = |i: usize| {
+            let (x, n, depth) = (&self.position[i], &self.normal[i], self.depth[i]);
+            let first = (depth - 0.5 * spacing).abs() < 1e-9 * spacing;
+            first.then(|| (std::array::from_fn(|k| x[k] + depth * n[k]), *n))
+        };
+        (0..self.len()).map(point).collect()
+    }
+
     /// Bytes in use.
     pub fn bytes(&self) -> usize {
         self.len() * (2 * size_of::<[f64; D]>() + 8 + 8 + 8 + 2)
@@ -146,6 +158,10 @@ pub struct WallSet<const D: usize, S> {
     pub records: Vec<Record<S>>,
     /// Elements near every owned fluid particle.
     pub near: ClusterList,
+    /// For a thin solid.
+    pub thin: Option<ThinWall>,
+    /// Pieces of the surface of a thin solid, one per record: point and normal; none for other elements.
+    surface: Vec<Option<([f64; D], [f64; D])>>,
     cells: CellList<D>,
     motion: Option<Motion<D>>,
 }
@@ -164,11 +180,15 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         elements: &WallElements<D>,
         grid: &Grid<D>,
         encoder: &Encoder<D, S>,
+        thin: impl Fn(u16) -> Option<ThinWall>,
     ) -> Vec<Self> {
         let mut order: Vec<u32> = (0..elements.len() as u32).collect();
         order.sort_by_key(|&i| elements.solid[i as usize]);
         let same = |a: &u32, b: &u32| elements.solid[*a as usize] == elements.solid[*b as usize];
-        let of_one = |some: &[u32]| Self::of_one(elements.some(some), grid, encoder).0;
+        let of_one = |some: &[u32]| {
+            let thin = thin(elements.solid[some[0] as usize]);
+            Self::of_one(elements.some(some), grid, encoder, thin).0
+        };
         order.chunk_by(same).map(of_one).collect()
     }
 
@@ -179,8 +199,9 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         frame: Frame<D>,
         grid: &Grid<D>,
         encoder: &Encoder<D, S>,
+        thin: Option<ThinWall>,
     ) -> Self {
-        let (set, sorted) = Self::of_one(elements, grid, encoder);
+        let (set, sorted) = Self::of_one(elements, grid, encoder, thin);
         let elements = sorted.id.iter().map(|id| (id - first) as u32).collect();
         Self { motion: Some(Motion { frame, elements }), ..set }
     }
@@ -190,6 +211,7 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         mut own: WallElements<D>,
         grid: &Grid<D>,
         encoder: &Encoder<D, S>,
+        thin: Option<ThinWall>,
     ) -> (Self, WallElements<D>) {
         let mut cells = CellList::build(grid, &own.position, &own.id);
         // Neighbours in space shall be neighbours in memory.
@@ -204,6 +226,11 @@ impl<const D: usize, S: Real> WallSet<D, S> {
             solid: own.solid.first().copied().unwrap_or(0),
             records: (0..own.len()).map(write).collect(),
             near: ClusterList::default(),
+            surface: match thin {
+                Some(ThinWall { spacing, .. }) => own.surface(spacing),
+                None => Vec::new(),
+            },
+            thin,
             cells,
             motion: None,
         };
@@ -229,6 +256,12 @@ impl<const D: usize, S: Real> WallSet<D, S> {
             let (position, normal) = element(*index as usize);
             *place = record(encoder.motion(&position, &normal), place[QUANTITY], place[WEIGHT]);
         }
+    }
+
+    /// The pieces of its surface near a cluster of targets, of a thin solid.
+    pub fn surface_near(&self, cluster: usize) -> impl Iterator<Item = &([f64; D], [f64; D])> {
+        let near = if self.thin.is_some() { self.near.sources(cluster) } else { &[] };
+        near.iter().filter_map(|&element| self.surface[element as usize].as_ref())
     }
 
     /// Where the elements are.

@@ -30,6 +30,21 @@ pub struct Scratch {
 }
 
 impl Chunk {
+    /// Lists of one target each: `list` adds the sources of a target.
+    pub fn one_by_one(targets: Range<usize>, mut list: impl FnMut(usize, &mut Vec<u32>)) -> Self {
+        let mut chunk = Self { first_target: targets.start, starts: vec![0], ..Self::default() };
+        for target in targets {
+            let before = chunk.entries.len();
+            list(target, &mut chunk.entries);
+            let others = chunk.entries[before..].iter().filter(|s| **s as usize != target).count();
+            chunk.starts.push(chunk.entries.len() as u32);
+            chunk.counts.push(others as u32);
+            chunk.pairs += others as u64;
+        }
+        chunk.entries.shrink_to_fit();
+        chunk
+    }
+
     #[inline]
     pub fn sources(&self, cluster: usize) -> &[u32] {
         &self.entries[self.starts[cluster] as usize..self.starts[cluster + 1] as usize]

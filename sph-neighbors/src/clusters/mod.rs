@@ -95,6 +95,44 @@ impl ClusterList {
         });
     }
 
+    /// A list in which every target is a cluster of its own: `keep` says which sources of its cluster it
+    /// has, and sees all of them, with what `prepare` made of the target.
+    ///
+    /// ```
+    /// use sph_neighbors::{CellList, ClusterList, Clusters, Grid};
+    ///
+    /// let positions = [[0.1, 0.2], [0.2, 0.2], [0.9, 0.2]];
+    /// let cells = CellList::build(&Grid::new([0.0, 0.0], 0.5)?, &positions, &[10, 11, 12]);
+    /// let mut list = ClusterList::default();
+    /// list.rebuild(&Clusters::new(3, &[]), &cells, &positions, true, 0.75);
+    /// let right = list.one_by_one(|_| (), |_, target, source| source as usize > target);
+    /// assert_eq!([0, 1, 2].map(|target| right.sources(target).len()), [2, 1, 0]);
+    /// # Ok::<(), sph_neighbors::GridError>(())
+    /// ```
+    #[must_use]
+    pub fn one_by_one<T>(
+        &self,
+        prepare: impl Fn(usize) -> T + Sync,
+        keep: impl Fn(&T, usize, u32) -> bool + Sync,
+    ) -> Self {
+        let targets = self.len();
+        let breaks: Vec<usize> = (1..targets).collect();
+        let chunk = |number: usize| {
+            let first = number * CHUNK;
+            Chunk::one_by_one(first..targets.min(first + CHUNK), |target, list| {
+                let all = self.sources(self.clusters.containing(target)).iter().copied();
+                let prepared = prepare(target);
+                list.extend(all.filter(|source| keep(&prepared, target, *source)));
+            })
+        };
+        Self {
+            clusters: Clusters::new(targets, &breaks),
+            chunks: (0..targets.div_ceil(CHUNK)).into_par_iter().map(chunk).collect(),
+            periods: self.periods.clone(),
+            pool: Pool::default(),
+        }
+    }
+
     /// The layout of the clusters.
     pub fn clusters(&self) -> &Clusters {
         &self.clusters

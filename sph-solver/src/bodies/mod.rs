@@ -23,6 +23,7 @@ pub use rigid::Rigid;
 pub use spring::Spring;
 
 use crate::lio::Extremes;
+use crate::model::Model;
 use crate::records::Encoder;
 use crate::space::wrapped;
 use crate::walls::{WallElements, WallSet};
@@ -214,8 +215,9 @@ impl<const D: usize> Bodies<D> {
         grid: &Grid<D>,
         encoder: &Encoder<D, S>,
         fluid: &Aabb<D>,
-        reach: f64,
+        model: &Model<D>,
     ) -> Vec<WallSet<D, S>> {
+        let reach = model.reach();
         let around = fluid.inflated(reach);
         let near = |x: &[f64; D]| {
             (0..D).all(|k| {
@@ -235,9 +237,10 @@ impl<const D: usize> Bodies<D> {
                 }
             }
             let frame = self.frame(moving.body.solid)?;
+            let thin = model.solid(moving.body.solid).and_then(|solid| solid.thin);
             let first = *elements.id.first()?;
             let placed = WallElements { position, normal, ..elements.some(&kept) };
-            (!kept.is_empty()).then(|| WallSet::moving(placed, first, frame, grid, encoder))
+            (!kept.is_empty()).then(|| WallSet::moving(placed, first, frame, grid, encoder, thin))
         };
         self.all.iter().filter_map(set).collect()
     }

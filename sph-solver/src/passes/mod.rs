@@ -34,6 +34,8 @@ use sph_neighbors::ClusterList;
 pub struct Surroundings<'a, const D: usize, S> {
     /// Fluid neighbours of every owned fluid particle.
     pub near_fluid: &'a ClusterList,
+    /// Those of them that a thin solid keeps a particle from seeing.
+    pub across: &'a ClusterList,
     /// Walls. They do not change during a pass.
     pub walls: &'a [WallSet<D, S>],
     /// Scale of the pairs.
@@ -41,7 +43,8 @@ pub struct Surroundings<'a, const D: usize, S> {
 }
 
 impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
-    /// Sets the rates of a block to the sum over its fluid neighbours, whose records are in `old`.
+    /// Sets the rates of a block to the sum over its fluid neighbours, whose records are in `old`, without
+    /// those that a thin solid hides.
     fn sum_fluid<R: Rate>(
         &self,
         sum: &dyn GroupSum<D, S, R>,
@@ -52,6 +55,27 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
         let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
         if !sum.sum(view, block.first, block.density, block.rates) {
             block.rates.fill(R::default());
+        }
+        self.take_hidden(sum, old, block.first, block.density, block.rates);
+    }
+
+    /// Takes the sum over the fluid neighbours that a thin solid hides from that over all of them.
+    fn take_hidden<R: Rate>(
+        &self,
+        sum: &dyn GroupSum<D, S, R>,
+        old: &[Record<S>],
+        first: usize,
+        density: &[f64],
+        rates: &mut [R],
+    ) {
+        if self.across.is_empty() {
+            return;
+        }
+        let (list, scale) = (self.across, self.scale);
+        let view = GroupView { targets: old, sources: old, list, scale, beside: None };
+        let mut hidden = vec![R::default(); rates.len()];
+        if sum.sum(view, first, density, &mut hidden) {
+            rates.iter_mut().zip(hidden).for_each(|(rate, hidden)| *rate -= hidden);
         }
     }
 
@@ -73,7 +97,7 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
                 sources: &wall.records,
                 list: &wall.near,
                 scale: self.scale,
-                beside: Some(Beside { frame: wall.frame(), ..targets.beside }),
+                beside: Some(Beside { frame: wall.frame(), thin: wall.thin, ..targets.beside }),
             };
             if sum.sum(view, targets.first, targets.density, &mut own) {
                 part(wall, &own);
@@ -93,6 +117,7 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
         let list = self.near_fluid;
         let view = GroupView { targets: old, sources: old, list, scale: self.scale, beside: None };
         fluid.sum(view, block.first, block.density, &mut sums);
+        self.take_hidden(fluid, old, block.first, block.density, &mut sums);
         if let Some(wall) = wall {
             let (targets, _) = block.targets();
             self.of_walls(wall, old, &targets, |_| true, |_, own| add(&mut sums, own));

@@ -1,5 +1,6 @@
 //! The particles of one rank in the layout that the passes work on.
 
+mod across;
 pub(crate) mod costs;
 mod rebuild;
 mod traveller;
@@ -34,6 +35,8 @@ pub struct Rank<const D: usize, S: Real> {
     pub solid: Parts,
     /// Fluid neighbours of the owned fluid particles.
     pub near_fluid: ClusterList,
+    /// Those of them that a thin solid keeps from being seen.
+    pub across: ClusterList,
     /// Walls that the fluid of this rank can see, with their elements near it.
     pub walls: Vec<WallSet<D, S>>,
     /// Lowest pressure that a wall has towards each owned fluid particle, Pa: the density pass says.
@@ -76,6 +79,8 @@ fn record_of<const D: usize, S: Real>(
 pub struct Passing<'a, const D: usize, S> {
     /// Fluid neighbours.
     pub near_fluid: &'a ClusterList,
+    /// Those of them that a thin solid hides.
+    pub across: &'a ClusterList,
     /// Walls.
     pub walls: &'a [WallSet<D, S>],
     /// Layout of the fluid.
@@ -101,7 +106,7 @@ pub struct Passing<'a, const D: usize, S> {
 impl<'a, const D: usize, S> Passing<'a, D, S> {
     /// The surroundings of the fluid.
     pub fn surroundings(&self, scale: &'a PairScale<D>) -> Surroundings<'a, D, S> {
-        Surroundings { near_fluid: self.near_fluid, walls: self.walls, scale }
+        Surroundings { near_fluid: self.near_fluid, across: self.across, walls: self.walls, scale }
     }
 }
 
@@ -126,6 +131,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         let n = self.fluid.owned();
         Passing {
             near_fluid: &self.near_fluid,
+            across: &self.across,
             walls: &self.walls,
             parts: self.fluid,
             plan: &self.plan,
@@ -175,6 +181,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             + self.shift.len() * size_of::<[f64; D]>()
             + self.force_rate.len() * (size_of::<[f64; D]>() + size_of::<DensityRate>() + 8)
             + self.near_fluid.bytes()
+            + self.across.bytes()
             + self.cells.as_ref().map_or(0, CellList::bytes)
             + self.walls.iter().map(WallSet::bytes).sum::<usize>()
     }

@@ -1,5 +1,6 @@
 //! The rebuild: who owns what, who needs what, in which order, and who is near whom.
 
+use super::across::across;
 use super::costs::{FLUID_COST, USUAL_NEIGHBOURS, WALL_COST};
 use super::traveller::{Traveller, arrive, depart, place};
 use super::{Rank, record_of};
@@ -67,9 +68,9 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.walls.retain(|wall| wall.frame().is_none());
         if !bodies.is_empty() {
             let fluid = Aabb::around(&self.state.position);
-            self.walls.extend(bodies.sets(&grid, encoder, &fluid, model.reach()));
+            self.walls.extend(bodies.sets(&grid, encoder, &fluid, model));
         }
-        team.install(|| self.build_lists(&grid, model.reach(), &outer));
+        team.install(|| self.build_lists(&grid, model, &outer));
         if sorts {
             self.compactness = self.near_fluid.compactness();
         }
@@ -190,7 +191,8 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.lowest_wall_pressure.resize(owned, 0.0);
     }
 
-    fn build_lists(&mut self, grid: &Grid<D>, reach: f64, outer: &State<D>) {
+    fn build_lists(&mut self, grid: &Grid<D>, model: &Model<D>, outer: &State<D>) {
+        let reach = model.reach();
         let targets = &self.state.position[..];
         let clusters = Clusters::without_jumps(targets, &[self.fluid.local], JUMP * reach);
         let cells = self.cells.get_or_insert_with(|| CellList::build(grid, &[], &[]));
@@ -205,6 +207,8 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         for wall in &mut self.walls {
             wall.find(&clusters, targets, reach);
         }
+        let places = [targets, &outer.position[..]];
+        self.across = across(&self.near_fluid, &self.walls, places, model);
     }
 }
 

@@ -136,14 +136,16 @@ impl<const D: usize> Setup<D> {
         };
         let mass = density0 * spacing.powi(D as i32);
         let mut particles = filling.finish(scene, fluid, &equation_of_state, &lattice, mass)?;
-        walls::add_walls(scene, &solids, &mut bodies, &lattice, &constants, &mut particles)
+        let thin = thickness::thin_solids(scene, &solids, &lattice, &domain, support);
+        let made = &mut particles;
+        walls::add_walls(scene, &solids, &thin, &mut bodies, &lattice, &constants, made)
             .map_err(|error| sizes::explain(error, scene, &solids, &regions, &meshes))?;
         sizes::without_particles(scene, &solids, &regions, &meshes, &domain, &particles)?;
-        notes.extend(thickness::notes(scene, &solids, &domain, &particles));
+        notes.extend(thickness::notes(&solids, &thin, spacing));
         Ok(Self {
             particles,
             constants,
-            solids: walls::models(scene, &solids),
+            solids: walls::models(scene, &solids, &thin),
             at_rest: moving::at_rest(scene, &solids),
             bodies,
             expected_speed,

@@ -6,7 +6,9 @@ use crate::csv_file;
 use crate::scene::{self, At, Degree, ErrorKind, Motion, Place, Scene, SceneError, TimedFormula};
 use crate::walls::WallElements;
 use nalgebra::{Matrix3, Unit, Vector3};
-use sph_geometry::{Aabb, Lattice, Solid, body_elements, shape_mass_properties};
+use sph_geometry::{
+    Aabb, Lattice, Solid, body_elements, shape_mass_properties, thin_body_elements,
+};
 
 /// Moments at which the speed of a prescribed motion is looked at.
 const SAMPLES: usize = 1000;
@@ -40,17 +42,18 @@ pub fn bodies<const D: usize>(
     Ok(bodies)
 }
 
-/// Makes the wall elements of a solid that moves, with ids from `first` on.
+/// Makes the wall elements of a solid that moves, which may be `thin`; their ids count from 0.
 pub fn add_elements<const D: usize>(
     scene: &Scene,
     body: &mut Body<D>,
+    thin: bool,
     lattice: &Lattice<D>,
     support: f64,
-    first: u64,
 ) -> Result<(), SceneError> {
     let place = scene.solid[usize::from(body.solid)].place;
-    let elements = body_elements(&body.shape, lattice, support)
-        .map_err(|error| lattice_error(scene, place, &error))?;
+    let make = if thin { thin_body_elements } else { body_elements };
+    let elements =
+        make(&body.shape, lattice, support).map_err(|error| lattice_error(scene, place, &error))?;
     if elements.positions.is_empty() {
         let kind = ErrorKind::Invalid {
             what: format!("solid `{}` moves, but has no wall particles", body.shape.name),
@@ -60,7 +63,7 @@ pub fn add_elements<const D: usize>(
         };
         return Err(scene.error(place, kind));
     }
-    body.elements = WallElements::of_body(&elements, body.solid, first);
+    body.elements = WallElements::of_body(&elements, body.solid, 0);
     Ok(())
 }
 

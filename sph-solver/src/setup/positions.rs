@@ -1,6 +1,6 @@
 //! Positions without the rest of the state, for reports on fields of many particles.
 
-use super::{Geometry, domain, fill, moving, nothing, overlap, walls};
+use super::{Geometry, domain, fill, moving, nothing, overlap, thickness, walls};
 use crate::scene::{Scene, SceneError};
 
 /// Memory that reports on positions take per particle at their peak, bytes.
@@ -31,11 +31,14 @@ impl<const D: usize> Positions<D> {
         }
         domain::check(scene, fluid, &geometry.domain, &position)?;
         let support = Geometry::<D>::support(scene);
-        let walls = walls::find_walls(scene, solids, lattice, &geometry.domain, support)?;
+        let domain = &geometry.domain;
+        let thin = thickness::thin_solids(scene, solids, lattice, domain, support);
+        let walls = walls::find_walls(scene, solids, &thin, lattice, domain, support)?;
         let fluid = position.len();
         position.extend_from_slice(&walls.positions);
         for mut body in moving::bodies(scene, solids)? {
-            moving::add_elements(scene, &mut body, lattice, support, 0)?;
+            let thin = thin[usize::from(body.solid)].is_some();
+            moving::add_elements(scene, &mut body, thin, lattice, support)?;
             position.extend_from_slice(&body.elements.position);
         }
         Ok(Self { position, fluid })

@@ -3,13 +3,14 @@
 use super::constants::Constants;
 use super::particles::Particles;
 use super::shapes::Shapes;
+use super::thickness::Thin;
 use super::{LARGEST, MOST_PARTICLES, lattice_error, memory, moving, too_many};
 use crate::bodies::Body;
 use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
 use sph_geometry::{
-    Aabb, Domain, FluidSide, Lattice, Solid, WallElements, free_cells, wall_elements,
-    wall_particles,
+    Aabb, Domain, FluidSide, Lattice, Solid, WallElements, free_cells, thin_wall_elements,
+    wall_elements, wall_particles,
 };
 
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
@@ -41,9 +42,13 @@ pub fn solids<const D: usize>(
 }
 
 /// What a run knows of the solids besides their particles.
-pub fn models<const D: usize>(scene: &Scene, solids: &[Solid<D>]) -> Vec<SolidModel<D>> {
+pub fn models<const D: usize>(
+    scene: &Scene,
+    solids: &[Solid<D>],
+    thin: &[Option<Thin<D>>],
+) -> Vec<SolidModel<D>> {
     let viscous = scene.viscosity().is_some();
-    let model = |(solid, keys): (&Solid<D>, &At<scene::Solid>)| {
+    let model = |((solid, keys), thin): ((&Solid<D>, &At<scene::Solid>), &Option<Thin<D>>)| {
         let bounds = solid.shape.bounding_box();
         let middle = |k: usize| {
             let middle = 0.5 * (bounds.min[k] + bounds.max[k]);
@@ -59,9 +64,10 @@ pub fn models<const D: usize>(scene: &Scene, solids: &[Solid<D>]) -> Vec<SolidMo
                 Some(friction) => friction == scene::WallFriction::Slip,
                 None => !viscous,
             },
+            thin: thin.as_ref().map(|thin| thin.wall(*scene.numerics.spacing)),
         }
     };
-    solids.iter().zip(&scene.solid).map(model).collect()
+    solids.iter().zip(&scene.solid).zip(thin).map(model).collect()
 }
 
 /// Whether so many particles of fluid fill every cell that fluid can be in.
@@ -82,6 +88,7 @@ pub fn is_closed<const D: usize>(
 pub fn add_walls<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
+    thin: &[Option<Thin<D>>],
     bodies: &mut [Body<D>],
     lattice: &Lattice<D>,
     constants: &Constants<D>,
@@ -89,9 +96,10 @@ pub fn add_walls<const D: usize>(
 ) -> Result<(), SceneError> {
     let bounds = Aabb::new(constants.domain.0, constants.domain.1);
     let support = constants.support_radius;
-    let walls = find_walls(scene, solids, lattice, &bounds, support)?;
+    let walls = find_walls(scene, solids, thin, lattice, &bounds, support)?;
     for body in &mut *bodies {
-        moving::add_elements(scene, body, lattice, support, 0)?;
+        let thin = thin[usize::from(body.solid)].is_some();
+        moving::add_elements(scene, body, thin, lattice, support)?;
     }
     let moving = bodies.iter().map(|body| body.elements.len()).sum::<usize>();
     let total = particles.len() + walls.positions.len() + moving;
@@ -131,25 +139,37 @@ pub fn add_walls<const D: usize>(
     Ok(())
 }
 
-/// The wall elements of solids at rest within `support` (m) of where fluid can be.
+/// The wall elements of solids at rest within `support` (m) of where fluid can be, `thin` ones among them.
 pub fn find_walls<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
+    thin: &[Option<Thin<D>>],
     lattice: &Lattice<D>,
     bounds: &Aabb<D>,
     support: f64,
 ) -> Result<WallElements<D>, SceneError> {
-    let at_rest = moving::at_rest(scene, solids);
-    if at_rest.is_empty() {
+    let moves = moving::moves(scene);
+    let at_rest = (0..solids.len()).filter(|&number| !moves[number]);
+    let (thin, thick): (Vec<usize>, Vec<usize>) = at_rest.partition(|&k| thin[k].is_some());
+    if thin.is_empty() && thick.is_empty() {
         return Ok(WallElements::default());
     }
     let (domain, place) = searchable(scene, lattice, bounds)?;
-    let mut walls = wall_elements(&at_rest, lattice, support, &domain)
-        .map_err(|error| lattice_error(scene, place, &error))?;
-    let moves = moving::moves(scene);
-    let numbers: Vec<u32> =
-        (0..moves.len() as u32).filter(|number| !moves[*number as usize]).collect();
-    walls.solids.iter_mut().for_each(|solid| *solid = numbers[*solid as usize]);
+    let of = |numbers: &[usize]| numbers.iter().map(|&k| solids[k].clone()).collect::<Vec<_>>();
+    let numbered = |mut walls: WallElements<D>, numbers: &[usize]| {
+        walls.solids.iter_mut().for_each(|solid| *solid = numbers[*solid as usize] as u32);
+        walls
+    };
+    let refuse = |error| lattice_error(scene, place, &error);
+    let (few, rest) = (of(&thin), of(&thick));
+    let mut walls = WallElements::default();
+    if !rest.is_empty() {
+        walls = numbered(wall_elements(&rest, lattice, support, &domain).map_err(refuse)?, &thick);
+    }
+    if !few.is_empty() {
+        let sides = thin_wall_elements(&few, &rest, lattice, support, &domain).map_err(refuse)?;
+        walls.append(numbered(sides, &thin));
+    }
     Ok(walls)
 }
 

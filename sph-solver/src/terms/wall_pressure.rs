@@ -42,8 +42,10 @@ impl<const D: usize> WallTerm<D, Pressure> for WallPressure {
         let speed = -dot(&i.velocity, &pair.normal);
         let limited = (speed.max(-speed) * lanes(6.0)).min(lanes(self.sound_speed));
         let dissipation = (speed + speed) * i.density * limited;
-        total.add(change - pressures, -change, pair);
-        total.damp(-dissipation, pair);
+        // What has come too close to a thin wall is kept from passing through it.
+        let more = pair.squeezed * pressures.max(L::zero());
+        total.add(change - pressures - more, -change, pair);
+        total.damp(-pair.squeezed.mul_add(dissipation, dissipation), pair);
     }
 
     #[inline(always)]
