@@ -19,6 +19,8 @@ pub struct FluidColumns<'a, const D: usize> {
     pub pressure_gradient: &'a mut [[f64; D]],
     /// Lowest pressures that a wall has towards them, Pa.
     pub lowest_wall_pressure: &'a mut [f64],
+    /// How much the walls around them count as one plane.
+    pub flatness: &'a mut [f64],
     /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
     pub shift: &'a mut [[f64; D]],
 }
@@ -33,6 +35,7 @@ impl<'a, const D: usize> FluidColumns<'a, D> {
             mass,
             pressure_gradient,
             lowest_wall_pressure,
+            flatness,
             shift,
         } = self;
         Block {
@@ -43,6 +46,7 @@ impl<'a, const D: usize> FluidColumns<'a, D> {
             mass,
             pressure_gradient,
             lowest_wall_pressure,
+            flatness,
             shift,
             rates,
             new,
@@ -67,6 +71,8 @@ pub struct Block<'a, const D: usize, S, R> {
     pub pressure_gradient: &'a mut [[f64; D]],
     /// Lowest pressures that a wall has towards them, Pa.
     pub lowest_wall_pressure: &'a mut [f64],
+    /// How much the walls around them count as one plane.
+    pub flatness: &'a mut [f64],
     /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
     pub shift: &'a mut [[f64; D]],
     /// Results of the flux loop.
@@ -109,6 +115,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
         let (mass, mass2) = self.mass.split_at(n);
         let (gradient, gradient2) = self.pressure_gradient.split_at_mut(n);
         let (lowest, lowest2) = self.lowest_wall_pressure.split_at_mut(n);
+        let (flatness, flatness2) = self.flatness.split_at_mut(n);
         let (shift, shift2) = self.shift.split_at_mut(n.min(self.shift.len()));
         let (rates, rates2) = self.rates.split_at_mut(n);
         let (new, new2) = self.new.split_at_mut(n);
@@ -121,6 +128,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 mass,
                 pressure_gradient: gradient,
                 lowest_wall_pressure: lowest,
+                flatness,
                 shift,
                 rates,
                 new,
@@ -133,6 +141,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 mass: mass2,
                 pressure_gradient: gradient2,
                 lowest_wall_pressure: lowest2,
+                flatness: flatness2,
                 shift: shift2,
                 rates: rates2,
                 new: new2,
@@ -149,6 +158,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             mass: self.mass,
             beside: Beside {
                 lowest_pressure: self.lowest_wall_pressure,
+                flatness: self.flatness,
                 pressure_gradient: self.pressure_gradient,
                 position: self.position,
                 frame: None,
@@ -177,6 +187,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             mass: self.mass,
             pressure_gradient: self.pressure_gradient,
             lowest_wall_pressure: self.lowest_wall_pressure,
+            flatness: self.flatness,
             shift: self.shift,
             rates: self.rates,
             new: self.new,
@@ -217,6 +228,7 @@ mod tests {
             mass: &m,
             pressure_gradient: &mut [[0.0; 2]; 10],
             lowest_wall_pressure: &mut [0.0; 10],
+            flatness: &mut [1.0; 10],
             shift: &mut [],
             rates: &mut r,
             new: &mut new,

@@ -59,6 +59,8 @@ pub struct Neighbors<'a, S, T, M> {
 pub struct Beside<'a, const D: usize> {
     /// Lowest pressure of a wall towards each target, Pa.
     pub lowest_pressure: &'a [f64],
+    /// How much the walls around each target count as one plane, from 0 to 1.
+    pub flatness: &'a [f64],
     /// ∇p/ρ at each target, m/s².
     pub pressure_gradient: &'a [[f64; D]],
     /// Position of each target, m.
@@ -160,7 +162,8 @@ where
         let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
         let to_q: L = lanes(scale.unit / scale.support_radius);
         let Self { records, list, term, beside, .. } = *self;
-        let Beside { lowest_pressure, pressure_gradient, position: places, frame, thin } = beside;
+        let Beside { lowest_pressure, flatness, pressure_gradient, position: places, .. } = beside;
+        let (frame, thin) = (beside.frame, beside.thin);
         let last = own.end - 1;
         let of_lanes = |f: &dyn Fn(usize) -> f64| -> L {
             let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f((own.start + l).min(last))));
@@ -169,6 +172,7 @@ where
         let mut beside = BesideWall {
             pressure_gradient: from_fn(|k| of_lanes(&|i| pressure_gradient[i][k])),
             lowest_pressure: of_lanes(&|i| lowest_pressure[i].max(LOWEST)),
+            flatness: of_lanes(&|i| flatness[i]),
             spin: [L::zero(); 3],
         };
         // Terms see a wall at rest.
@@ -201,7 +205,7 @@ where
                 WallPair { offset, distance2, normal, depth, weight, squeezed, unit, per_unit };
             term.add(target, &beside, &pair, &mut total);
         }
-        *sum = term.finish(target, &total);
+        *sum = term.finish(target, &beside, &total);
     }
 }
 

@@ -30,18 +30,22 @@ pub struct Scratch {
 }
 
 impl Chunk {
-    /// Lists of one target each: `list` adds the sources of a target.
-    pub fn one_by_one(targets: Range<usize>, mut list: impl FnMut(usize, &mut Vec<u32>)) -> Self {
-        let mut chunk = Self { first_target: targets.start, starts: vec![0], ..Self::default() };
-        for target in targets {
-            let before = chunk.entries.len();
-            list(target, &mut chunk.entries);
-            let others = chunk.entries[before..].iter().filter(|s| **s as usize != target).count();
+    /// Clusters of these targets from the list of each target; that of a cluster of several is empty.
+    pub fn of_lists(clusters: impl Iterator<Item = Range<usize>>, lists: &[Vec<u32>]) -> Self {
+        let mut chunk = Self { starts: vec![0], ..Self::default() };
+        for (number, targets) in clusters.enumerate() {
+            if number == 0 {
+                chunk.first_target = targets.start;
+            }
+            for target in targets {
+                let list = &lists[target];
+                let others = list.iter().filter(|s| **s as usize != target).count();
+                chunk.entries.extend_from_slice(list);
+                chunk.counts.push(others as u32);
+                chunk.pairs += others as u64;
+            }
             chunk.starts.push(chunk.entries.len() as u32);
-            chunk.counts.push(others as u32);
-            chunk.pairs += others as u64;
         }
-        chunk.entries.shrink_to_fit();
         chunk
     }
 

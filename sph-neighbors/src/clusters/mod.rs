@@ -95,8 +95,9 @@ impl ClusterList {
         });
     }
 
-    /// A list in which every target is a cluster of its own: `keep` says which sources of its cluster it
-    /// has, and sees all of them, with what `prepare` made of the target.
+    /// A list of a part of the pairs: `keep` says which sources of its cluster a target has, and sees all of
+    /// them, with what `prepare` made of the target. A target that has any is a cluster of its own; the
+    /// others share clusters without sources.
     ///
     /// ```
     /// use sph_neighbors::{CellList, ClusterList, Clusters, Grid};
@@ -106,7 +107,9 @@ impl ClusterList {
     /// let mut list = ClusterList::default();
     /// list.rebuild(&Clusters::new(3, &[]), &cells, &positions, true, 0.75);
     /// let right = list.one_by_one(|_| (), |_, target, source| source as usize > target);
-    /// assert_eq!([0, 1, 2].map(|target| right.sources(target).len()), [2, 1, 0]);
+    /// let clusters: Vec<_> = right.clusters().within(0..3).collect();
+    /// assert_eq!(clusters, [(0, 0..1), (1, 1..2), (2, 2..3)]);
+    /// assert_eq!([0, 1, 2].map(|cluster| right.sources(cluster).len()), [2, 1, 0]);
     /// # Ok::<(), sph_neighbors::GridError>(())
     /// ```
     #[must_use]
@@ -116,21 +119,26 @@ impl ClusterList {
         keep: impl Fn(&T, usize, u32) -> bool + Sync,
     ) -> Self {
         let targets = self.len();
-        let breaks: Vec<usize> = (1..targets).collect();
-        let chunk = |number: usize| {
-            let first = number * CHUNK;
-            Chunk::one_by_one(first..targets.min(first + CHUNK), |target, list| {
+        let kept: Vec<Vec<u32>> = (0..targets)
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|target| {
                 let all = self.sources(self.clusters.containing(target)).iter().copied();
                 let prepared = prepare(target);
-                list.extend(all.filter(|source| keep(&prepared, target, *source)));
+                all.filter(|source| keep(&prepared, target, *source)).collect()
             })
+            .collect();
+        let having = (0..targets).filter(|&target| !kept[target].is_empty());
+        let mut breaks: Vec<usize> = having.flat_map(|target| [target, target + 1]).collect();
+        breaks.dedup();
+        let clusters = Clusters::new(targets, &breaks);
+        let chunk = |number: usize| {
+            let first = number * CHUNK;
+            let some = first..clusters.len().min(first + CHUNK);
+            Chunk::of_lists(some.map(|cluster| clusters.targets_of(cluster)), &kept)
         };
-        Self {
-            clusters: Clusters::new(targets, &breaks),
-            chunks: (0..targets.div_ceil(CHUNK)).into_par_iter().map(chunk).collect(),
-            periods: self.periods.clone(),
-            pool: Pool::default(),
-        }
+        let chunks = (0..clusters.len().div_ceil(CHUNK)).into_par_iter().map(chunk).collect();
+        Self { clusters, chunks, periods: self.periods.clone(), pool: Pool::default() }
     }
 
     /// The layout of the clusters.

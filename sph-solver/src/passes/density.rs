@@ -42,6 +42,9 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
 
     fn flux(&self, old: &[Record<S>], block: &mut Block<'_, D, S, DensityRate>) -> Loads {
         self.around.sum_fluid(&*self.scheme.density, old, block);
+        if let Some(sum) = &self.scheme.wall_normals {
+            self.around.flatness(&**sum, old, block);
+        }
         if let Some(sum) = &self.scheme.wall_density {
             let (targets, rates) = block.targets();
             self.around.of_walls(&**sum, old, &targets, |_| true, |_, own| add(rates, own));

@@ -25,7 +25,7 @@ use crate::groups::{GroupSum, GroupView};
 use crate::records::Record;
 use crate::space::PairScale;
 use crate::sweep::Beside;
-use crate::terms::{Rate, VectorSum};
+use crate::terms::{Rate, VectorSum, flatness};
 use crate::walls::WallSet;
 use sph_neighbors::ClusterList;
 
@@ -102,6 +102,31 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
             if sum.sum(view, targets.first, targets.density, &mut own) {
                 part(wall, &own);
             }
+        }
+    }
+
+    /// Sets how much the walls around the particles of a block count as one plane. Where there is but one
+    /// solid, its own sums tell.
+    fn flatness<R>(
+        &self,
+        normals: &dyn GroupSum<D, S, VectorSum<D>>,
+        old: &[Record<S>],
+        block: &mut Block<'_, D, S, R>,
+    ) {
+        let range = block.first..block.first + block.len();
+        let near = |wall: &&WallSet<D, S>| {
+            let mut clusters = wall.near.clusters().within(range.clone());
+            clusters.any(|(cluster, _)| !wall.near.sources(cluster).is_empty())
+        };
+        block.flatness.fill(1.0);
+        if self.walls.iter().filter(near).count() < 2 {
+            return;
+        }
+        let mut all: Vec<Vec<VectorSum<D>>> = Vec::new();
+        let (targets, _) = block.targets();
+        self.of_walls(normals, old, &targets, |_| true, |_, own| all.push(own.to_vec()));
+        for (k, share) in block.flatness.iter_mut().enumerate() {
+            *share = flatness(all.iter().map(|of_solid| of_solid[k]));
         }
     }
 

@@ -13,7 +13,7 @@ const HALF: f64 = 0.75;
 /// below this.
 const OPPOSITE: f64 = -0.5;
 
-/// More pieces of surface than this are not looked at on the way to a neighbour.
+/// More sides than this are not looked at on the way to a neighbour.
 const MOST: usize = 8;
 
 /// Those neighbours of each particle to which the way leads through a thin solid: in through one side and
@@ -38,57 +38,76 @@ pub fn across<const D: usize, S: Real>(
         |target| {
             let cluster = near_fluid.clusters().containing(target);
             let x = &targets[target];
-            let mut sides = Vec::new();
+            let mut planes: Vec<Plane<D>> = Vec::new();
             for wall in &thin {
                 let Some(spacing) = wall.thin.map(|thin| thin.spacing) else { continue };
                 // What the lists of all clusters with this particle hold, whoever is in them.
                 let reach = model.reach() - spacing;
-                let near = wall.surface_near(cluster).filter_map(|(point, normal)| {
+                for (point, normal) in wall.surface_near(cluster) {
                     let from = space::offset(x, point, &model.periods);
-                    let side = Side { from, normal: *normal, height: dot(&from, normal), spacing };
-                    (dot(&from, &from) < reach * reach).then_some(side)
-                });
-                sides.extend(near);
+                    if dot(&from, &from) < reach * reach {
+                        Plane::add(&mut planes, from, *normal, spacing);
+                    }
+                }
             }
-            sides
+            planes
         },
-        |sides, target, source| {
-            !sides.is_empty() && {
+        |planes, target, source| {
+            !planes.is_empty() && {
                 let way = space::offset(place(source as usize), &targets[target], &model.periods);
-                is_hidden(sides, &way)
+                is_hidden(planes, &way)
             }
         },
     )
 }
 
-/// A piece of surface as a particle sees it.
-struct Side<const D: usize> {
-    /// The particle from the middle of the piece, m.
-    from: [f64; D],
+/// Pieces of surface in one plane as a particle sees them.
+struct Plane<const D: usize> {
     normal: [f64; D],
     /// Height of the particle over it, m.
     height: f64,
     spacing: f64,
+    /// The particle from the middle of each piece, m.
+    pieces: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Plane<D> {
+    fn add(planes: &mut Vec<Self>, from: [f64; D], normal: [f64; D], spacing: f64) {
+        let height = dot(&from, &normal);
+        let same = |plane: &&mut Self| {
+            (plane.height - height).abs() < 1e-6 * spacing
+                && dot(&plane.normal, &normal) > 1.0 - 1e-12
+        };
+        match planes.iter_mut().find(same) {
+            Some(plane) => plane.pieces.push(from),
+            None => planes.push(Self { normal, height, spacing, pieces: vec![from] }),
+        }
+    }
+
+    /// Whether a way from the particle leads through one of the pieces.
+    fn is_passed(&self, way: &[f64; D]) -> bool {
+        let change = dot(way, &self.normal);
+        if (self.height > 0.0) == (self.height + change > 0.0) {
+            return false;
+        }
+        let share = -self.height / change;
+        let through = |from: &[f64; D]| {
+            let there: [f64; D] = std::array::from_fn(|k| from[k] + share * way[k]);
+            dot(&there, &there) < (HALF * self.spacing).powi(2)
+        };
+        self.pieces.iter().any(through)
+    }
 }
 
 /// Whether a way from the particle leads through two sides that face away from each other.
-fn is_hidden<const D: usize>(sides: &[Side<D>], way: &[f64; D]) -> bool {
+fn is_hidden<const D: usize>(planes: &[Plane<D>], way: &[f64; D]) -> bool {
     let (mut passed, mut count) = ([[0.0; D]; MOST], 0);
-    for side in sides {
-        let change = dot(way, &side.normal);
-        if (side.height > 0.0) == (side.height + change > 0.0) {
-            continue;
-        }
-        let share = -side.height / change;
-        let there: [f64; D] = std::array::from_fn(|k| side.from[k] + share * way[k]);
-        if dot(&there, &there) > (HALF * side.spacing).powi(2) {
-            continue;
-        }
-        if passed[..count].iter().any(|normal| dot(normal, &side.normal) < OPPOSITE) {
+    for plane in planes.iter().filter(|plane| plane.is_passed(way)) {
+        if passed[..count].iter().any(|normal| dot(normal, &plane.normal) < OPPOSITE) {
             return true;
         }
         if count < MOST {
-            passed[count] = side.normal;
+            passed[count] = plane.normal;
             count += 1;
         }
     }
@@ -105,18 +124,19 @@ mod tests {
 
     /// Sides of a plate that is 0.1 m thick and ends at x = 1, y = 0 in its middle, pieces of 0.1 m, as seen
     /// from `x`.
-    fn plate(x: [f64; 2]) -> Vec<Side<2>> {
-        let side = |point: [f64; 2], normal: [f64; 2]| {
-            let from = [x[0] - point[0], x[1] - point[1]];
-            Side { from, normal, height: dot(&from, &normal), spacing: 0.1 }
+    fn plate(x: [f64; 2]) -> Vec<Plane<2>> {
+        let mut planes = Vec::new();
+        let mut side = |point: [f64; 2], normal: [f64; 2]| {
+            Plane::add(&mut planes, [x[0] - point[0], x[1] - point[1]], normal, 0.1);
         };
-        let mut sides = vec![side([1.0, 0.0], [1.0, 0.0])];
+        side([1.0, 0.0], [1.0, 0.0]);
         for k in 0..10 {
             let along = 0.05 + 0.1 * f64::from(k);
-            sides.push(side([along, 0.05], [0.0, 1.0]));
-            sides.push(side([along, -0.05], [0.0, -1.0]));
+            side([along, 0.05], [0.0, 1.0]);
+            side([along, -0.05], [0.0, -1.0]);
         }
-        sides
+        assert_eq!(planes.len(), 3);
+        planes
     }
 
     fn sees(x: [f64; 2], y: [f64; 2]) -> bool {

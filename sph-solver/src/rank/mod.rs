@@ -41,6 +41,8 @@ pub struct Rank<const D: usize, S: Real> {
     pub walls: Vec<WallSet<D, S>>,
     /// Lowest pressure that a wall has towards each owned fluid particle, Pa: the density pass says.
     lowest_wall_pressure: Vec<f64>,
+    /// How much the walls around each owned fluid particle count as one plane: the density pass says.
+    flatness: Vec<f64>,
     /// Velocity by which each owned fluid particle is shifted, m/s; nothing if none is.
     shift: Vec<[f64; D]>,
     /// Results of the force sweep.
@@ -142,6 +144,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
                 mass: &self.state.mass[..n],
                 pressure_gradient: &mut self.state.pressure_gradient[..n],
                 lowest_wall_pressure: &mut self.lowest_wall_pressure,
+                flatness: &mut self.flatness,
                 shift: &mut self.shift,
             },
             deviation: &mut self.deviation,
@@ -179,7 +182,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             + self.elements.bytes()
             + (self.deviation.len() + self.pressure.len()) * record
             + self.shift.len() * size_of::<[f64; D]>()
-            + self.force_rate.len() * (size_of::<[f64; D]>() + size_of::<DensityRate>() + 8)
+            + self.force_rate.len() * (size_of::<[f64; D]>() + size_of::<DensityRate>() + 16)
             + self.near_fluid.bytes()
             + self.across.bytes()
             + self.cells.as_ref().map_or(0, CellList::bytes)

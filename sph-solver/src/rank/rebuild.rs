@@ -189,6 +189,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.force_rate.resize(owned, Acceleration::default());
         self.density_rate.resize(owned, DensityRate::default());
         self.lowest_wall_pressure.resize(owned, 0.0);
+        self.flatness.resize(owned, 1.0);
     }
 
     fn build_lists(&mut self, grid: &Grid<D>, model: &Model<D>, outer: &State<D>) {

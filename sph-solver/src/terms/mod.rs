@@ -21,6 +21,7 @@ mod shifting;
 mod viscosity;
 mod wall_continuity;
 mod wall_friction;
+mod wall_normals;
 mod wall_pressure;
 mod wall_push;
 
@@ -35,6 +36,7 @@ pub use shifting::{Shifting, shift};
 pub use viscosity::LaminarViscosity;
 pub use wall_continuity::WallContinuity;
 pub use wall_friction::NoSlip;
+pub use wall_normals::{WallNormals, flatness};
 pub use wall_pressure::WallPressure;
 pub use wall_push::WallPush;
 
@@ -87,6 +89,8 @@ pub struct BesideWall<const D: usize, L> {
     pub pressure_gradient: [L; D],
     /// Lowest pressure that the wall may have towards the target, Pa.
     pub lowest_pressure: L,
+    /// 1 where all the walls around the target are of one plane, 0 where solids make a corner.
+    pub flatness: L,
     /// Angular velocity of the wall, rad/s. Velocities of targets are those in the frame of the wall.
     pub spin: [L; 3],
 }
@@ -133,7 +137,12 @@ pub trait WallTerm<const D: usize, Q: Quantity>: Copy + Send + Sync {
     );
 
     /// What the total means for the target, see [`Quantity`].
-    fn finish<L: Lanes>(&self, i: &Target<D, L>, total: &Self::Total<L>) -> Q::Sum<D, L>;
+    fn finish<L: Lanes>(
+        &self,
+        i: &Target<D, L>,
+        beside: &BesideWall<D, L>,
+        total: &Self::Total<L>,
+    ) -> Q::Sum<D, L>;
 }
 
 /// A contribution of pairs to a sweep whose records carry `Q`.
@@ -296,13 +305,10 @@ pub(crate) mod scalar {
         lowest_pressure: f64,
     ) -> Q::Rate<2> {
         let mut total = T::zero();
-        term.add(
-            i,
-            &BesideWall { pressure_gradient, lowest_pressure, spin: [0.0; 3] },
-            pair,
-            &mut total,
-        );
-        let sum = term.finish(i, &total);
+        let (flatness, spin) = (1.0, [0.0; 3]);
+        let beside = BesideWall { pressure_gradient, lowest_pressure, flatness, spin };
+        term.add(i, &beside, pair, &mut total);
+        let sum = term.finish(i, &beside, &total);
         let mut rates = [Q::Rate::default()];
         Q::rates(&sum, &[i.density], &mut rates);
         rates[0]

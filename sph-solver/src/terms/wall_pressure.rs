@@ -49,8 +49,13 @@ impl<const D: usize> WallTerm<D, Pressure> for WallPressure {
     }
 
     #[inline(always)]
-    fn finish<L: Lanes>(&self, _: &Target<D, L>, total: &WallPush<D, L>) -> [L; D] {
-        total.felt()
+    fn finish<L: Lanes>(
+        &self,
+        _: &Target<D, L>,
+        beside: &BesideWall<D, L>,
+        total: &WallPush<D, L>,
+    ) -> [L; D] {
+        total.felt(beside.flatness)
     }
 }
 
