@@ -3,6 +3,7 @@
 use crate::records::Record;
 use crate::sweep::Beside;
 use sph_neighbors::Clusters;
+use std::ops::Range;
 
 /// Columns of the owned fluid particles that a pass may change.
 #[derive(Debug)]
@@ -94,6 +95,26 @@ pub struct Targets<'a, const D: usize> {
     pub mass: &'a [f64],
     /// What wall terms are told of them.
     pub beside: Beside<'a, D>,
+}
+
+impl<const D: usize> Targets<'_, D> {
+    /// Some of them, counted from the first.
+    #[must_use]
+    pub fn part(&self, range: Range<usize>) -> Self {
+        Self {
+            first: self.first + range.start,
+            position: &self.position[range.clone()],
+            density: &self.density[range.clone()],
+            mass: &self.mass[range.clone()],
+            beside: Beside {
+                lowest_pressure: &self.beside.lowest_pressure[range.clone()],
+                flatness: &self.beside.flatness[range.clone()],
+                pressure_gradient: &self.beside.pressure_gradient[range.clone()],
+                position: &self.beside.position[range],
+                ..self.beside
+            },
+        }
+    }
 }
 
 impl<'a, const D: usize, S, R> Block<'a, D, S, R> {

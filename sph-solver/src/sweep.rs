@@ -159,9 +159,7 @@ where
         scale: &PairScale<D>,
         sum: &mut Q::Sum<D, L>,
     ) {
-        let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
-        let to_q: L = lanes(scale.unit / scale.support_radius);
-        let Self { records, list, term, beside, .. } = *self;
+        let beside = self.beside;
         let Beside { lowest_pressure, flatness, pressure_gradient, position: places, .. } = beside;
         let (frame, thin) = (beside.frame, beside.thin);
         let last = own.end - 1;
@@ -184,8 +182,44 @@ where
             target.velocity =
                 from_fn(|k| target.velocity[k] - of_lanes(&|i| walls[i - own.start][k]));
         }
-        let target = &target;
-        let side = thin.map(Side::new);
+        *sum = match thin {
+            None => self
+                .total::<K, L, Q>(cluster, position, &target, &beside, scale, |_, _| (None, None)),
+            Some(thin) => {
+                let side = Side::new(thin);
+                self.total::<K, L, Q>(cluster, position, &target, &beside, scale, |over, depth| {
+                    let height = over - depth;
+                    (Some(side.share(height)), Some(side.squeezed(height)))
+                })
+            }
+        };
+    }
+}
+
+impl<const D: usize, S, T, M> WallNeighbors<'_, D, S, T, M>
+where
+    S: Real,
+    M: Metric,
+{
+    /// The sum over the elements near a cluster. `side` makes of the height of the targets over an element
+    /// and its depth, both in m, which share of it they see and how much harder it pushes: nothing for
+    /// walls that are not thin, and then nothing is computed.
+    #[inline(always)]
+    fn total<K: Kernel, L: Lanes<Scalar = S>, Q: Quantity>(
+        &self,
+        cluster: usize,
+        position: &[L; D],
+        target: &Target<D, L>,
+        beside: &BesideWall<D, L>,
+        scale: &PairScale<D>,
+        side: impl Fn(L, L) -> (Option<L>, Option<L>),
+    ) -> Q::Sum<D, L>
+    where
+        T: WallTerm<D, Q>,
+    {
+        let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
+        let to_q: L = lanes(scale.unit / scale.support_radius);
+        let Self { records, list, term, .. } = *self;
         let mut total = T::zero();
         for &j in list.sources(cluster) {
             let record = &records[j as usize];
@@ -195,17 +229,13 @@ where
             let distance2 = dot(&offset, &offset);
             let weight = K::slope_shape(distance2.sqrt() * to_q) * L::splat(record[WEIGHT]);
             let depth = L::splat(record[QUANTITY]);
-            let (mut weight, mut squeezed) = (weight, L::zero());
-            if let Some(side) = &side {
-                let height = dot(&offset, &normal) * unit - depth;
-                weight = weight * side.share(height);
-                squeezed = side.squeezed(height);
-            }
+            let (share, squeezed) = side(dot(&offset, &normal) * unit, depth);
+            let weight = share.map_or(weight, |share| weight * share);
             let pair =
                 WallPair { offset, distance2, normal, depth, weight, squeezed, unit, per_unit };
-            term.add(target, &beside, &pair, &mut total);
+            term.add(target, beside, &pair, &mut total);
         }
-        *sum = term.finish(target, &beside, &total);
+        term.finish(target, beside, &total)
     }
 }
 

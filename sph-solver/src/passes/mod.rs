@@ -113,20 +113,24 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
         old: &[Record<S>],
         block: &mut Block<'_, D, S, R>,
     ) {
-        let range = block.first..block.first + block.len();
-        let near = |wall: &&WallSet<D, S>| {
-            let mut clusters = wall.near.clusters().within(range.clone());
-            clusters.any(|(cluster, _)| !wall.near.sources(cluster).is_empty())
-        };
         block.flatness.fill(1.0);
-        if self.walls.iter().filter(near).count() < 2 {
+        if self.walls.len() < 2 {
             return;
         }
-        let mut all: Vec<Vec<VectorSum<D>>> = Vec::new();
-        let (targets, _) = block.targets();
-        self.of_walls(normals, old, &targets, |_| true, |_, own| all.push(own.to_vec()));
-        for (k, share) in block.flatness.iter_mut().enumerate() {
-            *share = flatness(all.iter().map(|of_solid| of_solid[k]));
+        let first = block.first;
+        let clusters = self.near_fluid.clusters().within(first..first + block.len());
+        for (cluster, range) in clusters {
+            let near = |wall: &&WallSet<D, S>| !wall.near.sources(cluster).is_empty();
+            if self.walls.iter().filter(near).count() < 2 {
+                continue;
+            }
+            let mut all: Vec<Vec<VectorSum<D>>> = Vec::new();
+            let own = range.start - first..range.end - first;
+            let targets = block.targets().0.part(own.clone());
+            self.of_walls(normals, old, &targets, |_| true, |_, sums| all.push(sums.to_vec()));
+            for (k, share) in block.flatness[own].iter_mut().enumerate() {
+                *share = flatness(all.iter().map(|of_solid| of_solid[k]));
+            }
         }
     }
 

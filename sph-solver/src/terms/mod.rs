@@ -109,9 +109,9 @@ pub struct WallPair<const D: usize, L> {
     pub depth: L,
     /// w with ∇W_iw V_w = w r_iw, as in [`Pair`].
     pub weight: L,
-    /// How much harder than by its share the wall pushes: for a thin solid max(0, 1 − z/(dp/2))², z the
-    /// height of the target above its surface; 0 for other walls.
-    pub squeezed: L,
+    /// How much harder than by its share the wall of a thin solid pushes: max(0, 1 − z/(dp/2))², z the height
+    /// of the target above its surface. Nothing for other walls.
+    pub squeezed: Option<L>,
     /// Metres per unit.
     pub unit: L,
     /// Units per metre.
@@ -293,7 +293,7 @@ pub(crate) mod scalar {
     ) -> (Target<2, f64>, WallPair<2, f64>) {
         let (i, _, pair) = pair(r_iw, (velocity, [0.0; 2]), (quantity, 0.0), volume, slope);
         let Pair { offset, distance2, weight, unit, per_unit, .. } = pair;
-        let squeezed = 0.0;
+        let squeezed = None;
         (i, WallPair { offset, distance2, normal, depth, weight, squeezed, unit, per_unit })
     }
 

@@ -83,7 +83,7 @@ mod tests {
 
     fn pair(offset: [f64; 2], normal: [f64; 2], weight: f64) -> WallPair<2, f64> {
         let distance2 = offset[0] * offset[0] + offset[1] * offset[1];
-        let (depth, squeezed) = (0.1, 0.0);
+        let (depth, squeezed) = (0.1, None);
         WallPair { offset, distance2, normal, depth, weight, squeezed, unit: 1.0, per_unit: 1.0 }
     }
 
