@@ -9,7 +9,8 @@
 //! * [`Solid`]: a shape with material on one side of its surface.
 //! * [`Lattice`]: where particles are placed; [`fill_lattice`] fills a region with them.
 //! * [`wall_elements`]: the material of walls cell by cell, one support radius deep and only near fluid;
-//!   [`body_elements`]: those of a solid that moves.
+//!   [`body_elements`]: those of a solid that moves; [`thin_wall_elements`] and
+//!   [`thin_body_elements`]: those of solids thinner than the support.
 //! * [`SpacingField`]: where particles are finer than elsewhere; [`CellTree`] divides space accordingly.
 //!
 //! Lengths are in metres, directions are unit vectors, `D` is the dimension.
@@ -28,6 +29,8 @@ mod mesh;
 mod shape;
 mod shape_mass;
 mod solid;
+mod surface_pieces;
+mod thin_elements;
 mod vector;
 mod wall_elements;
 
@@ -40,6 +43,7 @@ pub use graded::{
 };
 pub use lattice::{
     Lattice, LatticeError, LatticeRuns, NearSurface, fill_lattice, lattice_inside, near_surface,
+    near_surface_within,
 };
 pub use mesh::{
     Bodies, Defects, MassProperties, MeshError, MeshFile, MeshFormat, MeshReport, Repaired,
@@ -48,6 +52,7 @@ pub use mesh::{
 pub use shape::{Nearest, Shape, ShapeError, SignedDistance};
 pub use shape_mass::shape_mass_properties;
 pub use solid::{FluidSide, Solid, depth_in_solids};
+pub use thin_elements::{thin_body_elements, thin_wall_elements};
 pub use wall_elements::{WallElements, wall_elements};
 
 /// Runs the programs of the README.

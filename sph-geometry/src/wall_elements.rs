@@ -83,6 +83,15 @@ impl<const D: usize> WallElements<D> {
         }
     }
 
+    /// Appends other elements.
+    pub fn append(&mut self, mut other: Self) {
+        self.positions.append(&mut other.positions);
+        self.volumes.append(&mut other.volumes);
+        self.solids.append(&mut other.solids);
+        self.normals.append(&mut other.normals);
+        self.depths.append(&mut other.depths);
+    }
+
     /// Adds an element of solid number `owner`.
     pub(crate) fn add(
         &mut self,

@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         lowest_pressure: f64::NEG_INFINITY,
         closed: false,
         on_lost: OnLost::Stop,
-        solids: vec![SolidModel { name: "tank".into(), center: [0.0; 2], slips: true }],
+        solids: vec![SolidModel { name: "tank".into(), center: [0.0; 2], slips: true, thin: None }],
     };
 
     // The column on a lattice, under the weight of the water above.

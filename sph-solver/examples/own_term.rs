@@ -50,6 +50,7 @@ fn closest(force: impl PairTerm<2, Pressure> + 'static) -> Result<f64, Box<dyn s
     let model = Model {
         spacing: dp,
         support_radius,
+        grading: None,
         skin: 0.1 * support_radius,
         gravity: [0.0; 2],
         equation_of_state: EquationOfState::Linear { density0, sound_speed },

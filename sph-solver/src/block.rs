@@ -3,6 +3,7 @@
 use crate::records::Record;
 use crate::sweep::Beside;
 use sph_neighbors::Clusters;
+use std::ops::Range;
 
 /// Columns of the owned fluid particles that a pass may change.
 #[derive(Debug)]
@@ -19,6 +20,8 @@ pub struct FluidColumns<'a, const D: usize> {
     pub pressure_gradient: &'a mut [[f64; D]],
     /// Lowest pressures that a wall has towards them, Pa.
     pub lowest_wall_pressure: &'a mut [f64],
+    /// How much the walls around them count as one plane.
+    pub flatness: &'a mut [f64],
     /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
     pub shift: &'a mut [[f64; D]],
     /// ∇R of each over the largest support radius, 1/m; nothing where all are the same.
@@ -35,6 +38,7 @@ impl<'a, const D: usize> FluidColumns<'a, D> {
             mass,
             pressure_gradient,
             lowest_wall_pressure,
+            flatness,
             shift,
             radius_slope,
         } = self;
@@ -46,6 +50,7 @@ impl<'a, const D: usize> FluidColumns<'a, D> {
             mass,
             pressure_gradient,
             lowest_wall_pressure,
+            flatness,
             shift,
             radius_slope,
             rates,
@@ -71,6 +76,8 @@ pub struct Block<'a, const D: usize, S, R> {
     pub pressure_gradient: &'a mut [[f64; D]],
     /// Lowest pressures that a wall has towards them, Pa.
     pub lowest_wall_pressure: &'a mut [f64],
+    /// How much the walls around them count as one plane.
+    pub flatness: &'a mut [f64],
     /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
     pub shift: &'a mut [[f64; D]],
     /// ∇R of each over the largest support radius, 1/m; nothing where all are the same.
@@ -96,6 +103,26 @@ pub struct Targets<'a, const D: usize> {
     pub beside: Beside<'a, D>,
 }
 
+impl<const D: usize> Targets<'_, D> {
+    /// Some of them, counted from the first.
+    #[must_use]
+    pub fn part(&self, range: Range<usize>) -> Self {
+        Self {
+            first: self.first + range.start,
+            position: &self.position[range.clone()],
+            density: &self.density[range.clone()],
+            mass: &self.mass[range.clone()],
+            beside: Beside {
+                lowest_pressure: &self.beside.lowest_pressure[range.clone()],
+                flatness: &self.beside.flatness[range.clone()],
+                pressure_gradient: &self.beside.pressure_gradient[range.clone()],
+                position: &self.beside.position[range],
+                ..self.beside
+            },
+        }
+    }
+}
+
 impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
     /// Number of particles.
     pub fn len(&self) -> usize {
@@ -115,6 +142,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
         let (mass, mass2) = self.mass.split_at(n);
         let (gradient, gradient2) = self.pressure_gradient.split_at_mut(n);
         let (lowest, lowest2) = self.lowest_wall_pressure.split_at_mut(n);
+        let (flatness, flatness2) = self.flatness.split_at_mut(n);
         let (shift, shift2) = self.shift.split_at_mut(n.min(self.shift.len()));
         let (slope, slope2) = self.radius_slope.split_at(n.min(self.radius_slope.len()));
         let (rates, rates2) = self.rates.split_at_mut(n);
@@ -128,6 +156,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 mass,
                 pressure_gradient: gradient,
                 lowest_wall_pressure: lowest,
+                flatness,
                 shift,
                 radius_slope: slope,
                 rates,
@@ -141,6 +170,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
                 mass: mass2,
                 pressure_gradient: gradient2,
                 lowest_wall_pressure: lowest2,
+                flatness: flatness2,
                 shift: shift2,
                 radius_slope: slope2,
                 rates: rates2,
@@ -158,10 +188,12 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             mass: self.mass,
             beside: Beside {
                 lowest_pressure: self.lowest_wall_pressure,
+                flatness: self.flatness,
                 pressure_gradient: self.pressure_gradient,
                 radius_slope: self.radius_slope,
                 position: self.position,
                 frame: None,
+                thin: None,
             },
         };
         (targets, self.rates)
@@ -186,6 +218,7 @@ impl<'a, const D: usize, S, R> Block<'a, D, S, R> {
             mass: self.mass,
             pressure_gradient: self.pressure_gradient,
             lowest_wall_pressure: self.lowest_wall_pressure,
+            flatness: self.flatness,
             shift: self.shift,
             radius_slope: self.radius_slope,
             rates: self.rates,
@@ -227,6 +260,7 @@ mod tests {
             mass: &m,
             pressure_gradient: &mut [[0.0; 2]; 10],
             lowest_wall_pressure: &mut [0.0; 10],
+            flatness: &mut [1.0; 10],
             shift: &mut [],
             radius_slope: &[],
             rates: &mut r,

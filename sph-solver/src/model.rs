@@ -46,6 +46,17 @@ pub struct SolidModel<const D: usize> {
     pub center: [f64; D],
     /// Whether the fluid slips along it.
     pub slips: bool,
+    /// For a solid so thin that each of its sides is a wall of its own.
+    pub thin: Option<ThinWall>,
+}
+
+/// A solid thinner than the support, each of whose sides is a wall of its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThinWall {
+    /// How far below its surface fluid still belongs to that side, m: not beyond the middle.
+    pub below: f64,
+    /// Distance of its elements, m.
+    pub spacing: f64,
 }
 
 /// What to do with a particle that leaves the domain.

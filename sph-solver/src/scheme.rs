@@ -5,7 +5,7 @@ use crate::groups::{BoxedSum, fluid_sum, wall_sum};
 use crate::kernel_shape::KernelShape;
 use crate::terms::{
     Acceleration, Crowding, DensityRate, Deviation, PairTerm, Pressure, Slope, SlopeSum, VectorSum,
-    WallTerm,
+    WallNormals, WallTerm,
 };
 use sph_kernels::{Kernel, Real};
 use std::marker::PhantomData;
@@ -21,6 +21,8 @@ pub struct Scheme<const D: usize, S> {
     pub force: BoxedSum<D, S, Acceleration<D>>,
     /// dρ/dt from walls.
     pub wall_density: Option<BoxedSum<D, S, DensityRate>>,
+    /// Where walls look, to tell corners between solids from planes.
+    pub wall_normals: Option<BoxedSum<D, S, VectorSum<D>>>,
     /// dv/dt from the pressure of walls.
     pub wall_force: Option<BoxedSum<D, S, Acceleration<D>>>,
     /// dv/dt from the friction of walls that do not let fluid slip.
@@ -59,6 +61,7 @@ impl<const D: usize, S: Real> Scheme<D, S> {
                 density: fluid_sum::<D, S, Deviation, K, _>(density),
                 force: fluid_sum::<D, S, Pressure, K, _>(force),
                 wall_density: None,
+                wall_normals: None,
                 wall_force: None,
                 wall_friction: None,
                 shifting: None,
@@ -93,6 +96,7 @@ impl<const D: usize, S: Real, K: Kernel> SchemeBuilder<D, S, K> {
     ) -> Self {
         self.scheme.wall_density = Some(wall_sum::<D, S, Deviation, K, _>(density));
         self.scheme.wall_force = Some(wall_sum::<D, S, Pressure, K, _>(force));
+        self.scheme.wall_normals = Some(wall_sum::<D, S, Crowding, K, _>(WallNormals));
         self
     }
 

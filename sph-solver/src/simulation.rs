@@ -135,7 +135,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             }
             None => Clock { step: 0, time: 0.0, dt: 0.0, extremes: start },
         };
-        if clock.step == 0 {
+        if clock.step == 0 && state.pressure_gradient.is_empty() {
             // As at rest: the pressure gradient carries the weight.
             state.pressure_gradient = vec![model.gravity; state.len()];
         }

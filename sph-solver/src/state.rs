@@ -15,7 +15,7 @@ pub struct State<const D: usize> {
     pub position: Vec<[f64; D]>,
     /// Velocity, m/s; half a step behind or ahead of the positions, see [`crate::passes`].
     pub velocity: Vec<[f64; D]>,
-    /// ∇p/ρ as walls continue it, m/s². A new run fills it.
+    /// ∇p/ρ as walls continue it, m/s². A new run that begins without takes gravity, as at rest.
     pub pressure_gradient: Vec<[f64; D]>,
 }
 

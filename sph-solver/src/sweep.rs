@@ -8,6 +8,7 @@
 //! nor on ranks, nor on the width of the lanes, nor on who shares its cluster.
 
 use crate::bodies::Frame;
+use crate::model::ThinWall;
 use crate::records::{QUANTITY, Record, WEIGHT, velocity_word};
 use crate::space::{Metric, PairScale};
 use crate::terms::{
@@ -61,6 +62,8 @@ pub struct Neighbors<'a, S, T, M> {
 pub struct Beside<'a, const D: usize> {
     /// Lowest pressure of a wall towards each target, Pa.
     pub lowest_pressure: &'a [f64],
+    /// How much the walls around each target count as one plane, from 0 to 1.
+    pub flatness: &'a [f64],
     /// ∇p/ρ at each target, m/s².
     pub pressure_gradient: &'a [[f64; D]],
     /// ∇R of each target over the largest support radius, 1/m; nothing where all are the same.
@@ -69,6 +72,8 @@ pub struct Beside<'a, const D: usize> {
     pub position: &'a [[f64; D]],
     /// How the wall moves; none for a wall at rest.
     pub frame: Option<&'a Frame<D>>,
+    /// For a thin solid.
+    pub thin: Option<ThinWall>,
 }
 
 /// Elements of a wall: their records hold the normal in the words of velocity and the depth below
@@ -171,12 +176,11 @@ where
         scale: &PairScale<D>,
         sum: &mut Q::Sum<D, L>,
     ) {
-        let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
-        let to_q: L = lanes(scale.unit / scale.support_radius);
-        let Self { records, list, term, beside, halves: (of_targets, halves), .. } = *self;
+        let (beside, (of_targets, _)) = (self.beside, self.halves);
         let half = if M::GRADED { of_lanes(of_targets, &own) } else { L::zero() };
-        let Beside { lowest_pressure, pressure_gradient, radius_slope, position: places, frame } =
-            beside;
+        let Beside { lowest_pressure, flatness, pressure_gradient, position: places, .. } = beside;
+        let radius_slope = beside.radius_slope;
+        let (frame, thin) = (beside.frame, beside.thin);
         let last = own.end - 1;
         let of_own = |f: &dyn Fn(usize) -> f64| -> L {
             let all: [S; CLUSTER] = from_fn(|l| S::from_f64(f((own.start + l).min(last))));
@@ -185,6 +189,7 @@ where
         let mut beside = BesideWall {
             pressure_gradient: from_fn(|k| of_own(&|i| pressure_gradient[i][k])),
             lowest_pressure: of_own(&|i| lowest_pressure[i].max(LOWEST)),
+            flatness: of_own(&|i| flatness[i]),
             spin: [L::zero(); 3],
         };
         // Terms see a wall at rest.
@@ -196,13 +201,50 @@ where
             target.velocity =
                 from_fn(|k| target.velocity[k] - of_own(&|i| walls[i - own.start][k]));
         }
-        let target = &target;
         let mut lean = [L::zero(); D];
         if M::GRADED {
             // −½ ∇R/R, with the half of R.
             let per_radius = lanes::<L>(-0.25).div(half);
             lean = from_fn(|k| of_own(&|i| radius_slope[i][k]) * per_radius);
         }
+        let seer = Seer { target, beside, half, lean };
+        *sum = match thin {
+            None => self.total::<K, L, Q>(cluster, position, &seer, scale, |_, _| (None, None)),
+            Some(thin) => {
+                let side = Side::new(thin);
+                self.total::<K, L, Q>(cluster, position, &seer, scale, |over, depth| {
+                    let height = over - depth;
+                    (Some(side.share(height)), Some(side.squeezed(height)))
+                })
+            }
+        };
+    }
+}
+
+impl<const D: usize, S, T, M> WallNeighbors<'_, D, S, T, M>
+where
+    S: Real,
+    M: Metric,
+{
+    /// The sum over the elements near a cluster. `side` makes of the height of the targets over an element
+    /// and its depth, both in m, which share of it they see and how much harder it pushes: nothing for
+    /// walls that are not thin, and then nothing is computed.
+    #[inline(always)]
+    fn total<K: Kernel, L: Lanes<Scalar = S>, Q: Quantity>(
+        &self,
+        cluster: usize,
+        position: &[L; D],
+        seer: &Seer<D, L>,
+        scale: &PairScale<D>,
+        side: impl Fn(L, L) -> (Option<L>, Option<L>),
+    ) -> Q::Sum<D, L>
+    where
+        T: WallTerm<D, Q>,
+    {
+        let (unit, per_unit) = (lanes(scale.unit), lanes(1.0 / scale.unit));
+        let to_q: L = lanes(scale.unit / scale.support_radius);
+        let Self { records, list, term, halves: (_, halves), .. } = *self;
+        let Seer { target, beside, half, lean } = seer;
         let mut total = T::zero();
         for &j in list.sources(cluster) {
             let record = &records[j as usize];
@@ -217,15 +259,67 @@ where
                 let half = half.max(L::splat(halves[j as usize]));
                 let Stretch { ratio, inverse, .. } = Stretch::of(half, half);
                 (q, weight) = (q * inverse, weight * of_gradients::<D, L>(inverse));
-                stretch = Some(WallStretch { ratio, inverse, lean });
+                stretch = Some(WallStretch { ratio, inverse, lean: *lean });
             }
             let weight = K::slope_shape(q) * weight;
             let depth = L::splat(record[QUANTITY]);
-            let pair =
-                WallPair { offset, distance2, normal, depth, weight, unit, per_unit, stretch };
-            term.add(target, &beside, &pair, &mut total);
+            let (share, squeezed) = side(dot(&offset, &normal) * unit, depth);
+            let weight = share.map_or(weight, |share| weight * share);
+            let pair = WallPair {
+                offset,
+                distance2,
+                normal,
+                depth,
+                weight,
+                squeezed,
+                unit,
+                per_unit,
+                stretch,
+            };
+            term.add(target, beside, &pair, &mut total);
         }
-        *sum = term.finish(target, &total);
+        term.finish(target, beside, &total)
+    }
+}
+
+/// Targets beside a wall.
+#[derive(Debug, Clone, Copy)]
+struct Seer<const D: usize, L> {
+    target: Target<D, L>,
+    beside: BesideWall<D, L>,
+    /// Half of the support radius over the largest, where radii vary.
+    half: L,
+    /// −½ ∇R/R, 1/m, where radii vary.
+    lean: [L; D],
+}
+
+/// What fluid belongs to a side of a thin solid: all that is in front of it or at most so far below its
+/// surface, with a share that falls from one to zero over the second half of that way.
+#[derive(Debug, Clone, Copy)]
+struct Side<L> {
+    below: L,
+    per_half: L,
+    per_first: L,
+}
+
+impl<L: Lanes> Side<L> {
+    #[inline(always)]
+    fn new(wall: ThinWall) -> Self {
+        let ThinWall { below, spacing } = wall;
+        Self { below: lanes(below), per_half: lanes(2.0 / below), per_first: lanes(2.0 / spacing) }
+    }
+
+    /// The share of a target at this height (m) over the surface.
+    #[inline(always)]
+    fn share(&self, height: L) -> L {
+        ((height + self.below) * self.per_half).max(L::zero()).min(lanes(1.0))
+    }
+
+    /// max(0, 1 − z/(dp/2))² of a target at this height z.
+    #[inline(always)]
+    fn squeezed(&self, height: L) -> L {
+        let closer = (lanes::<L>(1.0) - height * self.per_first).max(L::zero());
+        closer * closer
     }
 }
 
@@ -355,5 +449,27 @@ where
         let targets = own.clone();
         self.pairs.add::<K, L>(cluster, targets, &position, &target, self.scale, &mut sum);
         Q::rates(&sum, density, &mut self.rates[own]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_side_of_a_thin_solid_acts_down_to_its_middle() {
+        let side = Side::<f64>::new(ThinWall { below: 0.02, spacing: 0.1 });
+        assert_eq!(
+            [0.3, 0.0, -0.01, -0.02, -0.5].map(|z| side.share(z)),
+            [1.0, 1.0, 1.0, 0.0, 0.0]
+        );
+        assert!((side.share(-0.015) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn it_pushes_harder_from_half_a_spacing_on() {
+        let side = Side::<f64>::new(ThinWall { below: 0.05, spacing: 0.1 });
+        assert_eq!([0.2, 0.05, 0.0].map(|z| side.squeezed(z)), [0.0, 0.0, 1.0]);
+        assert!((side.squeezed(-0.05) - 4.0).abs() < 1e-12);
     }
 }

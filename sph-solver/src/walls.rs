@@ -9,6 +9,7 @@
 
 use crate::bodies::Frame;
 use crate::error::RunError;
+use crate::model::ThinWall;
 use crate::records::{Encoder, QUANTITY, Record, WEIGHT, record};
 use crate::search::{Search, Seekers, Sorted};
 use sph_decomp::Columns;
@@ -129,6 +130,17 @@ impl<const D: usize> WallElements<D> {
         }
     }
 
+    /// The point of the surface above every element of its uppermost layer, and the normal there. What
+    /// fills the corner between two sides is no part of that layer.
+    fn surface(&self, spacing: f64) -> Vec<Option<([f64; D], [f64; D])>> {
+        let point = |i: usize| {
+            let (x, n, depth) = (&self.position[i], &self.normal[i], self.depth[i]);
+            let first = (depth - 0.5 * spacing).abs() < 1e-9 * spacing;
+            first.then(|| (std::array::from_fn(|k| x[k] + depth * n[k]), *n))
+        };
+        (0..self.len()).map(point).collect()
+    }
+
     /// Bytes in use.
     pub fn bytes(&self) -> usize {
         self.len() * (2 * size_of::<[f64; D]>() + 8 + 8 + 8 + 2)
@@ -150,6 +162,10 @@ pub struct WallSet<const D: usize, S> {
     pub halves: Vec<S>,
     /// Elements near every owned fluid particle.
     pub near: ClusterList,
+    /// For a thin solid.
+    pub thin: Option<ThinWall>,
+    /// Pieces of the surface of a thin solid, one per record: point and normal; none for other elements.
+    surface: Vec<Option<([f64; D], [f64; D])>>,
     sorted: Sorted<D>,
     motion: Option<Motion<D>>,
 }
@@ -172,11 +188,15 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         elements: &WallElements<D>,
         search: &Search<'_, D>,
         encoder: &Encoder<D, S>,
+        thin: impl Fn(u16) -> Option<ThinWall>,
     ) -> Result<Vec<Self>, RunError> {
         let mut order: Vec<u32> = (0..elements.len() as u32).collect();
         order.sort_by_key(|&i| elements.solid[i as usize]);
         let same = |a: &u32, b: &u32| elements.solid[*a as usize] == elements.solid[*b as usize];
-        let of_one = |some: &[u32]| Ok(Self::of_one(elements.some(some), search, encoder)?.0);
+        let of_one = |some: &[u32]| {
+            let thin = thin(elements.solid[some[0] as usize]);
+            Ok(Self::of_one(elements.some(some), search, encoder, thin)?.0)
+        };
         order.chunk_by(same).map(of_one).collect()
     }
 
@@ -191,8 +211,9 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         frame: Frame<D>,
         search: &Search<'_, D>,
         encoder: &Encoder<D, S>,
+        thin: Option<ThinWall>,
     ) -> Result<Self, RunError> {
-        let (set, sorted) = Self::of_one(elements, search, encoder)?;
+        let (set, sorted) = Self::of_one(elements, search, encoder, thin)?;
         let elements = sorted.id.iter().map(|id| (id - first) as u32).collect();
         Ok(Self { motion: Some(Motion { frame, elements }), ..set })
     }
@@ -202,6 +223,7 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         mut own: WallElements<D>,
         search: &Search<'_, D>,
         encoder: &Encoder<D, S>,
+        thin: Option<ThinWall>,
     ) -> Result<(Self, WallElements<D>), RunError> {
         let reaches = search.reaches_of_volumes(&own.volume);
         let mut sorted = Sorted::new(search, &own.position, reaches.as_deref(), &own.id)?;
@@ -219,6 +241,11 @@ impl<const D: usize, S: Real> WallSet<D, S> {
             records: (0..own.len()).map(write).collect(),
             halves: search.halves_of_volumes(&own.volume).map(S::from_f64).collect(),
             near: ClusterList::default(),
+            surface: match thin {
+                Some(ThinWall { spacing, .. }) => own.surface(spacing),
+                None => Vec::new(),
+            },
+            thin,
             sorted,
             motion: None,
         };
@@ -244,6 +271,12 @@ impl<const D: usize, S: Real> WallSet<D, S> {
             let (position, normal) = element(*index as usize);
             *place = record(encoder.motion(&position, &normal), place[QUANTITY], place[WEIGHT]);
         }
+    }
+
+    /// The pieces of its surface near a cluster of targets, of a thin solid.
+    pub fn surface_near(&self, cluster: usize) -> impl Iterator<Item = &([f64; D], [f64; D])> {
+        let near = if self.thin.is_some() { self.near.sources(cluster) } else { &[] };
+        near.iter().filter_map(|&element| self.surface[element as usize].as_ref())
     }
 
     /// Finds the elements near the targets of each cluster.

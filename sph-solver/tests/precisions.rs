@@ -88,7 +88,7 @@ fn error<S: Real + bytemuck::Pod>(seed: u64) -> f64 {
         lowest_pressure: f64::NEG_INFINITY,
         closed: true,
         on_lost: OnLost::Stop,
-        solids: vec![SolidModel { name: "box".into(), center: [0.5; 2], slips: true }],
+        solids: vec![SolidModel { name: "box".into(), center: [0.5; 2], slips: true, thin: None }],
     };
     let friction = LaminarViscosity { dynamic_viscosity: VISCOSITY };
     let density =

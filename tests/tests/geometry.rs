@@ -178,10 +178,10 @@ fn thin_walls_and_open_surfaces() {
     let of_vessel: Vec<&str> =
         notes(&report).into_iter().filter(|note| note.starts_with("solid vessel")).collect();
     let [note] = of_vessel[..] else { panic!("{report:#}") };
-    for words in ["only 0.0300 m thick at [", "numerics.spacing = 0.015 or less"] {
+    for words in ["only 0.0300 m thick at [", "each of its sides is a wall of its own"] {
         assert!(note.contains(words), "{note}");
     }
-    let finer = scene(vessel, water).replace("spacing = 0.02", "spacing = 0.015");
+    let finer = scene(vessel, water).replace("spacing = 0.02", "spacing = 0.01");
     let report = checked(folder.path(), &finer);
     assert!(!notes(&report).iter().any(|note| note.contains("thick")), "{report:#}");
 

@@ -1,6 +1,7 @@
 //! Lattice points inside shapes and near their surfaces.
 
 use super::{Lattice, LatticeError, LatticeRuns, ON_SURFACE};
+use crate::aabb::Aabb;
 use crate::shape::Shape;
 
 /// The lattice points inside a shape. Points on the surface, up to a millionth of the spacing, are
@@ -42,10 +43,21 @@ pub fn near_surface<const D: usize>(
     lattice: &Lattice<D>,
     reach: f64,
 ) -> Result<Vec<NearSurface<D>>, LatticeError> {
+    near_surface_within(shape, lattice, reach, &Aabb::EVERYWHERE)
+}
+
+/// The same for the points in a box.
+pub fn near_surface_within<const D: usize>(
+    shape: &Shape<D>,
+    lattice: &Lattice<D>,
+    reach: f64,
+    bounds: &Aabb<D>,
+) -> Result<Vec<NearSurface<D>>, LatticeError> {
     if !reach.is_finite() || reach <= 0.0 {
         return Err(LatticeError::Support { support: reach });
     }
-    let cells = lattice.cells("shape", &shape.bounding_box().inflated(reach))?;
+    let around = shape.bounding_box().inflated(reach).intersection(bounds);
+    let cells = lattice.cells("shape", &around)?;
     let runs = LatticeRuns::trace(*lattice, cells, |x| shape.signed_distance(x).abs() - reach);
     let measured = |index| {
         let distance = shape.signed_distance(&lattice.point(&index));

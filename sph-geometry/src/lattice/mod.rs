@@ -3,7 +3,7 @@
 mod fill;
 mod runs;
 
-pub use fill::{NearSurface, fill_lattice, lattice_inside, near_surface};
+pub use fill::{NearSurface, fill_lattice, lattice_inside, near_surface, near_surface_within};
 pub use runs::LatticeRuns;
 pub(crate) use runs::Reach;
 

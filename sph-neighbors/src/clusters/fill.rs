@@ -57,6 +57,25 @@ impl Chunk {
         self.entries.extend_from_slice(entries);
     }
 
+    /// Clusters of these targets from the list of each target; that of a cluster of several is empty.
+    pub fn of_lists(clusters: impl Iterator<Item = Range<usize>>, lists: &[Vec<u32>]) -> Self {
+        let mut chunk = Self { starts: vec![0], ..Self::default() };
+        for (number, targets) in clusters.enumerate() {
+            if number == 0 {
+                chunk.first_target = targets.start;
+            }
+            for target in targets {
+                let list = &lists[target];
+                let others = list.iter().filter(|s| **s as usize != target).count();
+                chunk.entries.extend_from_slice(list);
+                chunk.counts.push(others as u32);
+                chunk.pairs += others as u64;
+            }
+            chunk.starts.push(chunk.entries.len() as u32);
+        }
+        chunk
+    }
+
     #[inline]
     pub fn sources(&self, cluster: usize) -> &[u32] {
         &self.entries[self.starts[cluster] as usize..self.starts[cluster + 1] as usize]

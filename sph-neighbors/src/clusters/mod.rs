@@ -137,6 +137,52 @@ impl ClusterList {
         });
     }
 
+    /// A list of a part of the pairs: `keep` says which sources of its cluster a target has, and sees all of
+    /// them, with what `prepare` made of the target. A target that has any is a cluster of its own; the
+    /// others share clusters without sources.
+    ///
+    /// ```
+    /// use sph_neighbors::{CellList, ClusterList, Clusters, Grid};
+    ///
+    /// let positions = [[0.1, 0.2], [0.2, 0.2], [0.9, 0.2]];
+    /// let cells = CellList::build(&Grid::new([0.0, 0.0], 0.5)?, &positions, &[10, 11, 12]);
+    /// let mut list = ClusterList::default();
+    /// list.rebuild(&Clusters::new(3, &[]), &cells, &positions, true, 0.75);
+    /// let right = list.one_by_one(|_| (), |_, target, source| source as usize > target);
+    /// let clusters: Vec<_> = right.clusters().within(0..3).collect();
+    /// assert_eq!(clusters, [(0, 0..1), (1, 1..2), (2, 2..3)]);
+    /// assert_eq!([0, 1, 2].map(|cluster| right.sources(cluster).len()), [2, 1, 0]);
+    /// # Ok::<(), sph_neighbors::GridError>(())
+    /// ```
+    #[must_use]
+    pub fn one_by_one<T>(
+        &self,
+        prepare: impl Fn(usize) -> T + Sync,
+        keep: impl Fn(&T, usize, u32) -> bool + Sync,
+    ) -> Self {
+        let targets = self.len();
+        let kept: Vec<Vec<u32>> = (0..targets)
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|target| {
+                let all = self.sources(self.clusters.containing(target)).iter().copied();
+                let prepared = prepare(target);
+                all.filter(|source| keep(&prepared, target, *source)).collect()
+            })
+            .collect();
+        let having = (0..targets).filter(|&target| !kept[target].is_empty());
+        let mut breaks: Vec<usize> = having.flat_map(|target| [target, target + 1]).collect();
+        breaks.dedup();
+        let clusters = Clusters::new(targets, &breaks);
+        let chunk = |number: usize| {
+            let first = number * CHUNK;
+            let some = first..clusters.len().min(first + CHUNK);
+            Chunk::of_lists(some.map(|cluster| clusters.targets_of(cluster)), &kept)
+        };
+        let chunks = (0..clusters.len().div_ceil(CHUNK)).into_par_iter().map(chunk).collect();
+        Self { clusters, chunks, periods: self.periods.clone(), pool: Pool::default() }
+    }
+
     /// The layout of the clusters.
     pub fn clusters(&self) -> &Clusters {
         &self.clusters

@@ -24,6 +24,7 @@ pub use spring::Spring;
 
 use crate::error::RunError;
 use crate::lio::Extremes;
+use crate::model::Model;
 use crate::records::Encoder;
 use crate::search::Search;
 use crate::space::wrapped;
@@ -95,6 +96,9 @@ struct Moving<const D: usize> {
     /// What is known of it and all it may hit: solids at rest, then bodies.
     gaps: Vec<Gap>,
 }
+
+/// A gap narrower than this part of the spacing holds no fluid.
+const CLOSED: f64 = 0.25;
 
 impl<const D: usize> Default for Bodies<D> {
     fn default() -> Self {
@@ -208,13 +212,15 @@ impl<const D: usize> Bodies<D> {
         in_scene(&(normal * normal.dot(&in_space(&force))))
     }
 
-    /// The elements of each body that lie within `reach` (m) of the box around some fluid, as sets of
-    /// walls. Elements inside a solid at rest are left out: there are those of that solid.
+    /// The elements of each body that lie within reach of the box around some fluid, as sets of walls.
+    /// Elements inside a solid at rest are left out: there are those of that solid. So are sides of thin
+    /// bodies so close to one that no fluid is in between.
     pub fn sets<S: Real>(
         &self,
         search: &Search<'_, D>,
         encoder: &Encoder<D, S>,
         fluid: &Aabb<D>,
+        model: &Model<D>,
     ) -> Result<Vec<WallSet<D, S>>, RunError> {
         let around = fluid.inflated(search.reach());
         let near = |x: &[f64; D]| {
@@ -224,20 +230,28 @@ impl<const D: usize> Bodies<D> {
         };
         let set = |moving: &Moving<D>| {
             let elements = &moving.body.elements;
+            let frame = self.frame(moving.body.solid)?;
+            let thin = model.solid(moving.body.solid).and_then(|solid| solid.thin);
+            let faces_wall = |x: &[f64; D], n: &[f64; D], depth: f64| {
+                thin.is_some_and(|thin| {
+                    let above = depth + CLOSED * thin.spacing;
+                    self.obstacles.cover(&std::array::from_fn(|k| x[k] + above * n[k]))
+                })
+            };
             let mut kept = Vec::new();
             let (mut position, mut normal) = (Vec::new(), Vec::new());
             for i in 0..elements.len() as u32 {
                 let (x, n) = self.in_domain(moving.element(&moving.now, i as usize));
-                if near(&x) && !self.obstacles.cover(&x) {
+                let depth = elements.depth[i as usize];
+                if near(&x) && !self.obstacles.cover(&x) && !faces_wall(&x, &n, depth) {
                     kept.push(i);
                     position.push(x);
                     normal.push(n);
                 }
             }
-            let frame = self.frame(moving.body.solid)?;
             let first = *elements.id.first()?;
             let placed = WallElements { position, normal, ..elements.some(&kept) };
-            (!kept.is_empty()).then(|| WallSet::moving(placed, first, frame, search, encoder))
+            (!kept.is_empty()).then(|| WallSet::moving(placed, first, frame, search, encoder, thin))
         };
         self.all.iter().filter_map(set).collect()
     }

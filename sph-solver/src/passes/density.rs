@@ -54,6 +54,9 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
         let mut books = open_books(self.model, self.scheme);
         let mut of_walls = vec![DensityRate::default(); books.as_ref().map_or(0, |_| block.len())];
         self.around.sum_fluid(&*self.scheme.density, old, block);
+        if let Some(sum) = &self.scheme.wall_normals {
+            self.around.flatness(&**sum, old, block);
+        }
         if let Some(sum) = &self.scheme.wall_density {
             let (targets, rates) = block.targets();
             self.around.of_walls(

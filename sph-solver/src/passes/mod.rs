@@ -26,7 +26,7 @@ use crate::groups::{GroupSum, GroupView};
 use crate::records::Record;
 use crate::space::PairScale;
 use crate::sweep::Beside;
-use crate::terms::{Rate, VectorSum};
+use crate::terms::{Rate, VectorSum, flatness};
 use crate::walls::WallSet;
 use sph_neighbors::ClusterList;
 
@@ -35,6 +35,8 @@ use sph_neighbors::ClusterList;
 pub struct Surroundings<'a, const D: usize, S> {
     /// Fluid neighbours of every owned fluid particle.
     pub near_fluid: &'a ClusterList,
+    /// Those of them that a thin solid keeps a particle from seeing.
+    pub across: &'a ClusterList,
     /// Walls. They do not change during a pass.
     pub walls: &'a [WallSet<D, S>],
     /// Scale of the pairs.
@@ -44,7 +46,8 @@ pub struct Surroundings<'a, const D: usize, S> {
 }
 
 impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
-    /// Sets the rates of a block to the sum over its fluid neighbours, whose records are in `old`.
+    /// Sets the rates of a block to the sum over its fluid neighbours, whose records are in `old`, without
+    /// those that a thin solid hides.
     fn sum_fluid<R: Rate>(
         &self,
         sum: &dyn GroupSum<D, S, R>,
@@ -56,6 +59,28 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
         let view = GroupView { targets: old, sources: old, list, scale, halves, beside: None };
         if !sum.sum(view, block.first, block.density, block.rates) {
             block.rates.fill(R::default());
+        }
+        self.take_hidden(sum, old, block.first, block.density, block.rates);
+    }
+
+    /// Takes the sum over the fluid neighbours that a thin solid hides from that over all of them.
+    fn take_hidden<R: Rate>(
+        &self,
+        sum: &dyn GroupSum<D, S, R>,
+        old: &[Record<S>],
+        first: usize,
+        density: &[f64],
+        rates: &mut [R],
+    ) {
+        if self.across.is_empty() {
+            return;
+        }
+        let (list, scale) = (self.across, self.scale);
+        let halves = self.halves.map(|all| (all, all));
+        let view = GroupView { targets: old, sources: old, list, scale, halves, beside: None };
+        let mut hidden = vec![R::default(); rates.len()];
+        if sum.sum(view, first, density, &mut hidden) {
+            rates.iter_mut().zip(hidden).for_each(|(rate, hidden)| *rate -= hidden);
         }
     }
 
@@ -78,7 +103,7 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
                 list: &wall.near,
                 scale: self.scale,
                 halves: self.halves.map(|fluid| (fluid, &wall.halves[..])),
-                beside: Some(Beside { frame: wall.frame(), ..targets.beside }),
+                beside: Some(Beside { frame: wall.frame(), thin: wall.thin, ..targets.beside }),
             };
             if sum.sum(view, targets.first, targets.density, &mut own) {
                 part(wall, &own);
@@ -98,7 +123,37 @@ impl<const D: usize, S: sph_kernels::Real> Surroundings<'_, D, S> {
         let (scale, halves) = (self.scale, self.halves.map(|all| (all, all)));
         let view = GroupView { targets: old, sources: old, list, scale, halves, beside: None };
         sum.sum(view, block.first, block.density, &mut sums);
+        self.take_hidden(sum, old, block.first, block.density, &mut sums);
         sums
+    }
+
+    /// Sets how much the walls around the particles of a block count as one plane. Where there is but one
+    /// solid, its own sums tell.
+    fn flatness<R>(
+        &self,
+        normals: &dyn GroupSum<D, S, VectorSum<D>>,
+        old: &[Record<S>],
+        block: &mut Block<'_, D, S, R>,
+    ) {
+        block.flatness.fill(1.0);
+        if self.walls.len() < 2 {
+            return;
+        }
+        let first = block.first;
+        let clusters = self.near_fluid.clusters().within(first..first + block.len());
+        for (cluster, range) in clusters {
+            let near = |wall: &&WallSet<D, S>| !wall.near.sources(cluster).is_empty();
+            if self.walls.iter().filter(near).count() < 2 {
+                continue;
+            }
+            let mut all: Vec<Vec<VectorSum<D>>> = Vec::new();
+            let own = range.start - first..range.end - first;
+            let targets = block.targets().0.part(own.clone());
+            self.of_walls(normals, old, &targets, |_| true, |_, sums| all.push(sums.to_vec()));
+            for (k, share) in block.flatness[own].iter_mut().enumerate() {
+                *share = flatness(all.iter().map(|of_solid| of_solid[k]));
+            }
+        }
     }
 
     /// Sets the shifts of a block to the sums of how crowded fluid and walls are.

@@ -1,5 +1,6 @@
 //! The particles of one rank in the layout that the passes work on.
 
+mod across;
 pub(crate) mod costs;
 mod first;
 mod rebuild;
@@ -41,10 +42,14 @@ pub struct Rank<const D: usize, S: Real> {
     pub solid: Parts,
     /// Fluid neighbours of the owned fluid particles.
     pub near_fluid: ClusterList,
+    /// Those of them that a thin solid keeps from being seen.
+    pub across: ClusterList,
     /// Walls that the fluid of this rank can see, with their elements near it.
     pub walls: Vec<WallSet<D, S>>,
     /// Lowest pressure that a wall has towards each owned fluid particle, Pa: the density pass says.
     lowest_wall_pressure: Vec<f64>,
+    /// How much the walls around each owned fluid particle count as one plane: the density pass says.
+    flatness: Vec<f64>,
     /// Velocity by which each owned fluid particle is shifted, m/s; nothing if none is.
     shift: Vec<[f64; D]>,
     /// ∇R of each owned fluid particle over the largest support radius, 1/m; nothing where all are the
@@ -91,6 +96,8 @@ fn record_of<const D: usize, S: Real>(
 pub struct Passing<'a, const D: usize, S> {
     /// Fluid neighbours.
     pub near_fluid: &'a ClusterList,
+    /// Those of them that a thin solid hides.
+    pub across: &'a ClusterList,
     /// Walls.
     pub walls: &'a [WallSet<D, S>],
     /// Halves of the support radii of the fluid over the largest; none where all are the same.
@@ -118,8 +125,8 @@ pub struct Passing<'a, const D: usize, S> {
 impl<'a, const D: usize, S> Passing<'a, D, S> {
     /// The surroundings of the fluid.
     pub fn surroundings(&self, scale: &'a PairScale<D>) -> Surroundings<'a, D, S> {
-        let Self { near_fluid, walls, halves, .. } = *self;
-        Surroundings { near_fluid, walls, scale, halves }
+        let Self { near_fluid, across, walls, halves, .. } = *self;
+        Surroundings { near_fluid, across, walls, scale, halves }
     }
 }
 
@@ -169,6 +176,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         let n = self.fluid.owned();
         Passing {
             near_fluid: &self.near_fluid,
+            across: &self.across,
             walls: &self.walls,
             halves: self.halves.as_deref(),
             parts: self.fluid,
@@ -180,6 +188,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
                 mass: &self.state.mass[..n],
                 pressure_gradient: &mut self.state.pressure_gradient[..n],
                 lowest_wall_pressure: &mut self.lowest_wall_pressure,
+                flatness: &mut self.flatness,
                 shift: &mut self.shift,
                 radius_slope: &self.radius_slope,
             },
@@ -218,10 +227,11 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             + self.elements.bytes()
             + (self.deviation.len() + self.pressure.len()) * record
             + self.shift.len() * size_of::<[f64; D]>()
-            + self.force_rate.len() * (size_of::<[f64; D]>() + size_of::<DensityRate>() + 8)
+            + self.force_rate.len() * (size_of::<[f64; D]>() + size_of::<DensityRate>() + 16)
             + self.near_fluid.bytes()
             + self.sorted.as_ref().map_or(0, Sorted::bytes)
             + self.halves.as_ref().map_or(0, |halves| size_of_val(&halves[..]))
+            + self.across.bytes()
             + self.walls.iter().map(WallSet::bytes).sum::<usize>()
     }
 }

@@ -1,5 +1,6 @@
 //! The rebuild: who owns what, who needs what, in which order, and who is near whom.
 
+use super::across::across;
 use super::costs::{FLUID_COST, USUAL_NEIGHBOURS, WALL_COST};
 use super::traveller::{Traveller, arrive, depart, place};
 use super::{Rank, record_of};
@@ -82,9 +83,9 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         self.walls.retain(|wall| wall.frame().is_none());
         if !bodies.is_empty() {
             let fluid = Aabb::around(&self.state.position);
-            self.walls.extend(bodies.sets(&search, encoder, &fluid)?);
+            self.walls.extend(bodies.sets(&search, encoder, &fluid, model)?);
         }
-        team.install(|| self.build_lists(&search, &outer))?;
+        team.install(|| self.build_lists(&search, model, &outer))?;
         if sorts {
             self.compactness = self.near_fluid.compactness();
         }
@@ -224,9 +225,15 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             let masses = self.state.mass.iter().chain(&outer.mass);
             masses.map(|mass| S::from_f64(0.5 * grading.ratio::<D>(*mass))).collect()
         });
+        self.flatness.resize(owned, 1.0);
     }
 
-    fn build_lists(&mut self, search: &Search<'_, D>, outer: &State<D>) -> Result<(), RunError> {
+    fn build_lists(
+        &mut self,
+        search: &Search<'_, D>,
+        model: &Model<D>,
+        outer: &State<D>,
+    ) -> Result<(), RunError> {
         let position = &self.state.position[..];
         let reach = search.reach();
         let clusters = &Clusters::without_jumps(position, &[self.fluid.local], JUMP * reach);
@@ -248,6 +255,8 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
         for wall in &mut self.walls {
             wall.find(search, &seekers);
         }
+        let places = [position, &outer.position[..]];
+        self.across = across(&self.near_fluid, &self.walls, places, model);
         Ok(())
     }
 }

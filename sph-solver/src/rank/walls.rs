@@ -56,7 +56,8 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             }
         }
         self.solid = Parts { local: owned - inner, inner, outer: all.len() - owned };
-        self.walls = team.install(|| WallSet::of_all(&all, search, encoder))?;
+        let thin = |number| model.solid(number).and_then(|solid| solid.thin);
+        self.walls = team.install(|| WallSet::of_all(&all, search, encoder, thin))?;
         self.settled = true;
         Ok(())
     }

@@ -56,6 +56,9 @@ impl<const D: usize> Filling<D> {
         let mut particles = Particles::default();
         for (region, range) in regions(fluid, &self.ends) {
             let At { value: pressure, place } = region.pressure.as_ref().unwrap_or(&fluid.pressure);
+            if matches!(pressure, Pressure::Hydrostatic) {
+                particles.resting.push((range.clone(), scene.gravity()));
+            }
             for i in range {
                 let x = self.position[i];
                 let p = match pressure {

@@ -158,14 +158,23 @@ impl<const D: usize> Setup<D> {
         };
         let cells = Cells { lattice, volume: volume.as_deref() };
         let mut particles = filling.finish(scene, fluid, &equation_of_state, &cells)?;
-        walls::add_walls(scene, &geometry, &mut bodies, &constants, &mut particles)
+        let thin = thickness::thin_solids(scene, solids, lattice, domain, support);
+        let (thin, of_thickness) = match &geometry.spacing {
+            None => {
+                let notes = thickness::notes(solids, &thin, spacing);
+                (thin, notes)
+            }
+            Some(_) => (vec![None; solids.len()], thickness::graded_notes(solids, &thin)),
+        };
+        let made = &mut particles;
+        walls::add_walls(scene, &geometry, &thin, &mut bodies, &constants, made)
             .map_err(explain)?;
         sizes::without_particles(scene, solids, regions, meshes, domain, &particles)?;
-        notes.extend(thickness::notes(scene, solids, domain, &particles));
+        notes.extend(of_thickness);
         Ok(Self {
             particles,
             constants,
-            solids: walls::models(scene, solids),
+            solids: walls::models(scene, solids, &thin),
             at_rest: moving::at_rest(scene, solids),
             bodies,
             expected_speed,

@@ -40,12 +40,11 @@ pub fn bodies<const D: usize>(
     Ok(bodies)
 }
 
-/// Gives a solid that moves its wall elements, with ids from `first` on.
+/// Gives a solid that moves its wall elements, whose ids count from 0.
 pub fn add_elements<const D: usize>(
     scene: &Scene,
     body: &mut Body<D>,
     elements: Result<sph_geometry::WallElements<D>, LatticeError>,
-    first: u64,
 ) -> Result<(), SceneError> {
     let place = scene.solid[usize::from(body.solid)].place;
     let elements = elements.map_err(|error| lattice_error(scene, place, &error))?;
@@ -58,7 +57,7 @@ pub fn add_elements<const D: usize>(
         };
         return Err(scene.error(place, kind));
     }
-    body.elements = WallElements::of_body(&elements, body.solid, first);
+    body.elements = WallElements::of_body(&elements, body.solid, 0);
     Ok(())
 }
 

@@ -19,6 +19,8 @@ pub struct Particles<const D: usize> {
     pub mass: Vec<f64>,
     /// 0 for the fluid, 1 + k for solid number k of the scene.
     pub kind: Vec<u16>,
+    /// Those of the fluid whose pressure carries its weight, with ∇p/ρ, m/s²; in the rest of it that is zero.
+    pub resting: Vec<(Range<usize>, [f64; D])>,
     /// Unit normals of the wall particles alone, out of the wall into the fluid.
     pub normal: Vec<[f64; D]>,
     /// Volumes of the wall particles alone, m^D.
@@ -45,13 +47,18 @@ impl<const D: usize> Particles<D> {
 
     /// Copies of some of the fluid, `part` of [`fluid`](Self::fluid).
     pub fn state(&self, part: Range<usize>) -> State<D> {
+        let mut pressure_gradient = vec![[0.0; D]; part.len()];
+        for (range, gradient) in &self.resting {
+            let own = |i: usize| i.clamp(part.start, part.end) - part.start;
+            pressure_gradient[own(range.start)..own(range.end)].fill(*gradient);
+        }
         State {
             id: part.clone().map(|i| i as u64).collect(),
             mass: self.mass[part.clone()].to_vec(),
             density: self.density[part.clone()].to_vec(),
             position: self.position[part.clone()].to_vec(),
             velocity: self.velocity[part].to_vec(),
-            pressure_gradient: Vec::new(),
+            pressure_gradient,
         }
     }
 

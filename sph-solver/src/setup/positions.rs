@@ -1,8 +1,8 @@
 //! Positions without the rest of the state, for reports on fields of many particles.
 
-use super::{Geometry, domain, fill, moving, nothing, overlap, walls};
+use super::{Geometry, domain, fill, moving, nothing, overlap, thickness, walls};
 use crate::scene::{Scene, SceneError};
-use sph_geometry::body_elements;
+use sph_geometry::{body_elements, thin_body_elements};
 
 /// Memory that reports on positions take per particle at their peak, bytes.
 pub const BYTES_PER_POSITION: f64 = 130.0;
@@ -32,12 +32,16 @@ impl<const D: usize> Positions<D> {
         }
         domain::check(scene, fluid, &geometry.domain, &position)?;
         let support = Geometry::<D>::support(scene);
-        let walls = walls::find_walls(scene, solids, lattice, &geometry.domain, support)?;
+        let domain = &geometry.domain;
+        let thin = thickness::thin_solids(scene, solids, lattice, domain, support);
+        let walls = walls::find_walls(scene, solids, &thin, lattice, domain, support)?;
         let fluid = position.len();
         position.extend_from_slice(&walls.positions);
         for mut body in moving::bodies(scene, solids)? {
-            let elements = body_elements(&body.shape, lattice, support);
-            moving::add_elements(scene, &mut body, elements, 0)?;
+            let thin = thin[usize::from(body.solid)].is_some();
+            let make = if thin { thin_body_elements } else { body_elements };
+            let elements = make(&body.shape, lattice, support);
+            moving::add_elements(scene, &mut body, elements)?;
             position.extend_from_slice(&body.elements.position);
         }
         Ok(Self { position, fluid })

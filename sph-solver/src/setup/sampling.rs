@@ -1,6 +1,6 @@
 //! Blocks of the lattice instead of particles, for fields that do not fit into memory.
 
-use super::{Geometry, lattice_error, nothing, overlap, too_many, walls};
+use super::{Geometry, lattice_error, nothing, overlap, thickness, too_many, walls};
 use crate::scene::{Scene, SceneError};
 use sph_geometry::{Lattice, Shape, Solid};
 use std::collections::HashSet;
@@ -138,8 +138,9 @@ impl<const D: usize> Sample<D> {
         let support =
             if self.side == 1 { Geometry::<D>::support(scene) } else { thick * coarse.spacing() };
         let walls = if self.side == 1 {
-            walls::find_walls(scene, &geometry.solids, &coarse, &geometry.domain, support)?
-                .positions
+            let Geometry { solids, domain, .. } = geometry;
+            let thin = thickness::thin_solids(scene, solids, &coarse, domain, support);
+            walls::find_walls(scene, solids, &thin, &coarse, domain, support)?.positions
         } else {
             // Blocks cannot be cut: a block is wall when its middle is.
             walls::find_cells(scene, &geometry.solids, &coarse, &geometry.domain, support)?

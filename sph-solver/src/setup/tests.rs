@@ -172,16 +172,45 @@ fn solids_that_the_fluid_cannot_meet_are_refused() {
 }
 
 #[test]
-fn thin_walls_are_named_with_place_and_spacing() {
+fn thin_walls_are_named_with_their_place() {
     let solid = "[[solid]]\nname = \"gate\"\nbox = { min = [2, 0], max = [2.12, 1] }\n\
                  fluid_side = \"outside\"\n";
     let scene = scene(&format!("{TANK}{solid}"), &[]).unwrap();
     let notes = Setup::<2>::new(&scene).unwrap().notes();
     let note = notes.iter().find(|note| note.starts_with("solid gate")).expect("a note");
-    for words in ["0.1200 m thick at [2.", "1.2 spacings", "numerics.spacing = 0.06 or less"] {
+    for words in ["0.1200 m thick at [2.", "1.2 spacings", "each of its sides is a wall of its own"]
+    {
         assert!(note.contains(words), "{note}");
     }
     assert!(!notes.iter().any(|note| note.starts_with("solid tank")), "{notes:?}");
+}
+
+#[test]
+fn a_solid_thinner_than_the_support_has_two_sides() {
+    let with = |width: f64| {
+        let solid = format!(
+            "[[solid]]\nname = \"gate\"\nbox = {{ min = [2, 0], max = [{}, 1] }}\n\
+             fluid_side = \"outside\"\n",
+            2.0 + width
+        );
+        Setup::<2>::new(&scene(&format!("{TANK}{solid}"), &[]).unwrap()).unwrap()
+    };
+    // The spacing is 0.1 m, the support three times that.
+    for (width, below) in [(0.05, Some(0.025)), (0.1, Some(0.05)), (0.25, Some(0.05)), (0.4, None)]
+    {
+        let setup = with(width);
+        let found = setup.solids[1].thin.map(|thin| thin.below);
+        let same = match (found, below) {
+            (Some(found), Some(below)) => (found - below).abs() < 1e-9,
+            (found, below) => found == below,
+        };
+        assert!(same, "{width}: {found:?}");
+        assert_eq!(setup.solids[0].thin, None);
+    }
+    // What is pressed that far into so thin a wall is on its other side.
+    let notes = with(0.02).notes();
+    let words = "may leak there: numerics.spacing = 0.066 or less would do";
+    assert!(notes.iter().any(|note| note.contains(words)), "{notes:?}");
 }
 
 #[test]

@@ -1,82 +1,141 @@
-//! Walls that are too thin to hold the fluid.
+//! Solids that are too thin to fill the support of the fluid beside them.
 
-use super::particles::Particles;
+use super::moving;
+use crate::model::ThinWall;
 use crate::scene::Scene;
-use sph_geometry::{Aabb, Solid, depth_in_solids};
-
-/// A wall holds the fluid when it is so many spacings thick.
-const HOLDS: f64 = 2.0;
+use sph_geometry::{Aabb, Lattice, Solid, depth_in_solids, near_surface_within};
 
 /// Two sides of a wall face away from each other when the cosine of the angle between their normals is
 /// below this: 25 degrees. Edges and corners, where material is always thin, do not.
 const OPPOSITE: f64 = -0.9;
 
-/// The thinnest place of a solid.
-struct Thin<const D: usize> {
-    /// m.
-    thickness: f64,
-    at: [f64; D],
-    /// How many of the wall particles at the surface are in front of too little material.
-    count: usize,
-    /// Wall particles at the surface.
-    of: usize,
+/// A solid is thin when more than this share of its surface is.
+const SHARE: f64 = 0.02;
+
+/// A solid thinner than this part of the spacing may leak: what is pressed into it so far comes out on the
+/// other side.
+const HOLDS: f64 = 0.3;
+
+/// A solid whose sides are walls of their own, because the material between them is thinner than the
+/// support.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Thin<const D: usize> {
+    /// Its least thickness, m.
+    pub thickness: f64,
+    /// Where that is, m.
+    pub at: [f64; D],
+    /// Share of its surface that is in front of too little material.
+    pub share: f64,
 }
 
-/// Notes on solids with walls that may leak: the solid, the place, the thickness and the spacing that
-/// would do.
-pub fn notes<const D: usize>(
+impl<const D: usize> Thin<D> {
+    /// What a run knows of it.
+    pub fn wall(&self, spacing: f64) -> ThinWall {
+        ThinWall { below: 0.5 * self.thickness.min(spacing), spacing }
+    }
+}
+
+/// Which solids are thin where fluid may meet them, one answer per solid.
+pub fn thin_solids<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
+    lattice: &Lattice<D>,
     domain: &Aabb<D>,
-    particles: &Particles<D>,
-) -> Vec<String> {
-    let spacing = *scene.numerics.spacing;
-    let walls = particles.fluid().end;
-    let mut notes = Vec::new();
-    for (index, solid) in solids.iter().enumerate() {
-        let mut thin = Thin { thickness: f64::INFINITY, at: [0.0; D], count: 0, of: 0 };
-        for particle in particles.of_kind(1 + index as u16) {
-            let (depth, normal) =
-                (particles.depth[particle - walls], particles.normal[particle - walls]);
-            if depth > spacing {
-                continue;
-            }
-            thin.of += 1;
-            let x = particles.position[particle];
-            let surface = std::array::from_fn(|k| x[k] + depth * normal[k]);
-            let Some(thickness) = thickness(solids, &surface, &normal, HOLDS * spacing) else {
-                continue;
-            };
-            let behind: [f64; D] =
-                std::array::from_fn(|k| surface[k] - (thickness + 0.5 * spacing) * normal[k]);
-            if !domain.contains(&behind) {
-                continue;
-            }
-            thin.count += 1;
-            if thickness < thin.thickness {
-                (thin.thickness, thin.at) = (thickness, surface);
-            }
+    support: f64,
+) -> Vec<Option<Thin<D>>> {
+    let at_rest = moving::at_rest(scene, solids);
+    let one = |(solid, moves): (&Solid<D>, bool)| {
+        let material = if moves { std::slice::from_ref(solid) } else { &at_rest[..] };
+        let bounds = if moves { &Aabb::EVERYWHERE } else { domain };
+        thin(solid, material, lattice, bounds, support)
+    };
+    solids.iter().zip(moving::moves(scene)).map(one).collect()
+}
+
+fn thin<const D: usize>(
+    solid: &Solid<D>,
+    material: &[Solid<D>],
+    lattice: &Lattice<D>,
+    domain: &Aabb<D>,
+    support: f64,
+) -> Option<Thin<D>> {
+    let spacing = lattice.spacing();
+    let around = domain.inflated(support).intersection(&solid.shape.bounding_box());
+    if !around.is_finite() {
+        // Material without end is not thin.
+        return None;
+    }
+    let half = 0.5 * spacing * (D as f64).sqrt();
+    let surface = near_surface_within(&solid.shape, lattice, half, &around.inflated(half)).ok()?;
+    let (mut count, mut of) = (0_usize, 0_usize);
+    let mut thinnest = Thin { thickness: f64::INFINITY, at: [0.0; D], share: 0.0 };
+    for near in &surface {
+        let x = lattice.point(&near.index);
+        let (depth, normal) = solid.depth_and_normal(&x);
+        let point = |depth: f64| std::array::from_fn(|k| x[k] + depth * normal[k]);
+        let surface: [f64; D] = point(depth);
+        // Fluid must be able to be in front of it.
+        let front = point(depth + 0.5 * spacing);
+        if !domain.contains(&front) || depth_in_solids(material, &front) > -0.1 * spacing {
+            continue;
         }
-        if thin.count > 0 {
-            notes.push(in_words(&solid.name, &thin, spacing));
+        of += 1;
+        let Some(thickness) = thickness(material, &surface, &normal, support) else { continue };
+        if !domain.contains(&point(depth - thickness - 0.5 * spacing)) {
+            continue;
+        }
+        count += 1;
+        if thickness < thinnest.thickness {
+            (thinnest.thickness, thinnest.at) = (thickness, surface);
         }
     }
-    notes
+    thinnest.share = count as f64 / of.max(1) as f64;
+    (thinnest.share > SHARE).then_some(thinnest)
+}
+
+/// What deserves to be said of thin solids.
+pub fn notes<const D: usize>(
+    solids: &[Solid<D>],
+    thin: &[Option<Thin<D>>],
+    spacing: f64,
+) -> Vec<String> {
+    let note = |(solid, thin): (&Solid<D>, &Option<Thin<D>>)| {
+        thin.as_ref().map(|thin| in_words(&solid.name, thin, spacing))
+    };
+    solids.iter().zip(thin).filter_map(note).collect()
+}
+
+/// The same where spacings vary: there, thin solids are made as thick ones are.
+pub fn graded_notes<const D: usize>(solids: &[Solid<D>], thin: &[Option<Thin<D>>]) -> Vec<String> {
+    let note = |(solid, thin): (&Solid<D>, &Option<Thin<D>>)| {
+        let Thin { thickness, at, .. } = thin.as_ref()?;
+        Some(format!(
+            "solid {} is only {thickness:.4} m thick at {at:.4?}, less than the support of coarse particles: \
+             with [[refine]] it holds only what is fine enough there",
+            solid.name
+        ))
+    };
+    solids.iter().zip(thin).filter_map(note).collect()
 }
 
 fn in_words<const D: usize>(name: &str, thin: &Thin<D>, spacing: f64) -> String {
-    let Thin { thickness, at, count, of } = thin;
+    let Thin { thickness, at, share } = thin;
     let at = at.map(|x| (x / spacing * 100.0).round() * spacing / 100.0);
     let at: Vec<String> = at.iter().map(|x| format!("{x:.4}")).collect();
-    format!(
-        "solid {name} is only {thickness:.4} m thick at [{}], {:.1} spacings, and may leak there \
-         ({:.0} % of its surface is thinner than {HOLDS} spacings): numerics.spacing = {} or less \
-         would do, or a thicker wall",
+    let place = format!(
+        "solid {name} is only {thickness:.4} m thick at [{}], {:.1} spacings ({:.0} % of its surface is \
+         thinner than the support)",
         at.join(", "),
         thickness / spacing,
-        (100.0 * *count as f64 / *of as f64).max(1.0),
-        rounded_down(thickness / HOLDS),
-    )
+        (100.0 * share).max(1.0),
+    );
+    if thickness / spacing < HOLDS {
+        let enough = rounded_down(thickness / HOLDS);
+        return format!(
+            "{place}, and may leak there: numerics.spacing = {enough} or less would do, or a thicker wall"
+        );
+    }
+    format!("{place}: each of its sides is a wall of its own")
 }
 
 /// Two significant digits, not more than the number but for rounding.

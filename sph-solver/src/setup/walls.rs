@@ -3,13 +3,14 @@
 use super::constants::Constants;
 use super::particles::Particles;
 use super::shapes::Shapes;
+use super::thickness::Thin;
 use super::{Geometry, LARGEST, MOST_PARTICLES, graded, lattice_error, memory, moving, too_many};
 use crate::bodies::Body;
 use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
 use sph_geometry::{
     Aabb, Domain, FluidSide, Lattice, LatticeError, Solid, WallElements, body_elements, free_cells,
-    wall_elements, wall_particles,
+    thin_body_elements, thin_wall_elements, wall_elements, wall_particles,
 };
 
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
@@ -44,9 +45,13 @@ pub fn solids<const D: usize>(
 }
 
 /// What a run knows of the solids besides their particles.
-pub fn models<const D: usize>(scene: &Scene, solids: &[Solid<D>]) -> Vec<SolidModel<D>> {
+pub fn models<const D: usize>(
+    scene: &Scene,
+    solids: &[Solid<D>],
+    thin: &[Option<Thin<D>>],
+) -> Vec<SolidModel<D>> {
     let viscous = scene.viscosity().is_some();
-    let model = |(solid, keys): (&Solid<D>, &At<scene::Solid>)| {
+    let model = |((solid, keys), thin): ((&Solid<D>, &At<scene::Solid>), &Option<Thin<D>>)| {
         let bounds = solid.shape.bounding_box();
         let middle = |k: usize| {
             let middle = 0.5 * (bounds.min[k] + bounds.max[k]);
@@ -62,9 +67,10 @@ pub fn models<const D: usize>(scene: &Scene, solids: &[Solid<D>]) -> Vec<SolidMo
                 Some(friction) => friction == scene::WallFriction::Slip,
                 None => !viscous,
             },
+            thin: thin.as_ref().map(|thin| thin.wall(*scene.numerics.spacing)),
         }
     };
-    solids.iter().zip(&scene.solid).map(model).collect()
+    solids.iter().zip(&scene.solid).zip(thin).map(model).collect()
 }
 
 /// Whether so many particles of fluid, of these volumes where they differ, fill every cell that fluid can
@@ -95,6 +101,7 @@ const CLOSED: f64 = 1e-3;
 pub fn add_walls<const D: usize>(
     scene: &Scene,
     geometry: &Geometry<D>,
+    thin: &[Option<Thin<D>>],
     bodies: &mut [Body<D>],
     constants: &Constants<D>,
     particles: &mut Particles<D>,
@@ -102,15 +109,18 @@ pub fn add_walls<const D: usize>(
     let solids = &geometry.solids;
     let support = constants.support_radius;
     let walls = match &geometry.spacing {
-        None => find_walls(scene, solids, &geometry.lattice, &geometry.domain, support)?,
+        None => find_walls(scene, solids, thin, &geometry.lattice, &geometry.domain, support)?,
         Some(field) => graded::find_walls(scene, geometry, field)?,
     };
     for body in &mut *bodies {
         let elements = match &geometry.spacing {
+            None if thin[usize::from(body.solid)].is_some() => {
+                thin_body_elements(&body.shape, &geometry.lattice, support)
+            }
             None => body_elements(&body.shape, &geometry.lattice, support),
             Some(field) => graded::body_elements(scene, geometry, field, body),
         };
-        moving::add_elements(scene, body, elements, 0)?;
+        moving::add_elements(scene, body, elements)?;
     }
     let moving = bodies.iter().map(|body| body.elements.len()).sum::<usize>();
     let total = particles.len() + walls.positions.len() + moving;
@@ -150,17 +160,38 @@ pub fn add_walls<const D: usize>(
     Ok(())
 }
 
-/// The wall elements of solids at rest within `support` (m) of where fluid can be.
+/// The wall elements of solids at rest within `support` (m) of where fluid can be, `thin` ones among them.
 pub fn find_walls<const D: usize>(
     scene: &Scene,
     solids: &[Solid<D>],
+    thin: &[Option<Thin<D>>],
     lattice: &Lattice<D>,
     bounds: &Aabb<D>,
     support: f64,
 ) -> Result<WallElements<D>, SceneError> {
-    find_with(scene, solids, lattice, bounds, |at_rest, domain| {
-        wall_elements(at_rest, lattice, support, domain)
-    })
+    let moves = moving::moves(scene);
+    let at_rest = (0..solids.len()).filter(|&number| !moves[number]);
+    let (thin, thick): (Vec<usize>, Vec<usize>) = at_rest.partition(|&k| thin[k].is_some());
+    if thin.is_empty() && thick.is_empty() {
+        return Ok(WallElements::default());
+    }
+    let (domain, place) = searchable(scene, lattice, bounds)?;
+    let of = |numbers: &[usize]| numbers.iter().map(|&k| solids[k].clone()).collect::<Vec<_>>();
+    let numbered = |mut walls: WallElements<D>, numbers: &[usize]| {
+        walls.solids.iter_mut().for_each(|solid| *solid = numbers[*solid as usize] as u32);
+        walls
+    };
+    let refuse = |error| lattice_error(scene, place, &error);
+    let (few, rest) = (of(&thin), of(&thick));
+    let mut walls = WallElements::default();
+    if !rest.is_empty() {
+        walls = numbered(wall_elements(&rest, lattice, support, &domain).map_err(refuse)?, &thick);
+    }
+    if !few.is_empty() {
+        let sides = thin_wall_elements(&few, &rest, lattice, support, &domain).map_err(refuse)?;
+        walls.append(numbered(sides, &thin));
+    }
+    Ok(walls)
 }
 
 /// The wall elements that `make` makes of the solids at rest in the domain.

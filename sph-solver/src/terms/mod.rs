@@ -23,6 +23,7 @@ mod shifting;
 mod viscosity;
 mod wall_continuity;
 mod wall_friction;
+mod wall_normals;
 mod wall_pressure;
 mod wall_push;
 
@@ -40,6 +41,7 @@ pub use shifting::{Shifting, shift};
 pub use viscosity::LaminarViscosity;
 pub use wall_continuity::WallContinuity;
 pub use wall_friction::NoSlip;
+pub use wall_normals::{WallNormals, flatness};
 pub use wall_pressure::WallPressure;
 pub use wall_push::WallPush;
 
@@ -124,6 +126,8 @@ pub struct BesideWall<const D: usize, L> {
     pub pressure_gradient: [L; D],
     /// Lowest pressure that the wall may have towards the target, Pa.
     pub lowest_pressure: L,
+    /// 1 where all the walls around the target are of one plane, 0 where solids make a corner.
+    pub flatness: L,
     /// Angular velocity of the wall, rad/s. Velocities of targets are those in the frame of the wall.
     pub spin: [L; 3],
 }
@@ -142,6 +146,9 @@ pub struct WallPair<const D: usize, L> {
     pub depth: L,
     /// w with ∇W_iw V_w = w r_iw, as in [`Pair`].
     pub weight: L,
+    /// How much harder than by its share the wall of a thin solid pushes: max(0, 1 − z/(dp/2))², z the height
+    /// of the target above its surface. Nothing for other walls.
+    pub squeezed: Option<L>,
     /// Metres per unit.
     pub unit: L,
     /// Units per metre.
@@ -177,7 +184,12 @@ pub trait WallTerm<const D: usize, Q: Quantity>: Copy + Send + Sync {
     );
 
     /// What the total means for the target, see [`Quantity`].
-    fn finish<L: Lanes>(&self, i: &Target<D, L>, total: &Self::Total<L>) -> Q::Sum<D, L>;
+    fn finish<L: Lanes>(
+        &self,
+        i: &Target<D, L>,
+        beside: &BesideWall<D, L>,
+        total: &Self::Total<L>,
+    ) -> Q::Sum<D, L>;
 }
 
 /// A contribution of pairs to a sweep whose records carry `Q`.
@@ -330,7 +342,19 @@ pub(crate) mod scalar {
     ) -> (Target<2, f64>, WallPair<2, f64>) {
         let (i, _, pair) = pair(r_iw, (velocity, [0.0; 2]), (quantity, 0.0), volume, slope);
         let Pair { offset, distance2, weight, unit, per_unit, .. } = pair;
-        (i, WallPair { offset, distance2, normal, depth, weight, unit, per_unit, stretch: None })
+        let (squeezed, stretch) = (None, None);
+        let pair = WallPair {
+            offset,
+            distance2,
+            normal,
+            depth,
+            weight,
+            squeezed,
+            unit,
+            per_unit,
+            stretch,
+        };
+        (i, pair)
     }
 
     /// What a wall term adds to the rate of the target, where ∇p/ρ is `gradient`.
@@ -341,13 +365,10 @@ pub(crate) mod scalar {
         lowest_pressure: f64,
     ) -> Q::Rate<2> {
         let mut total = T::zero();
-        term.add(
-            i,
-            &BesideWall { pressure_gradient, lowest_pressure, spin: [0.0; 3] },
-            pair,
-            &mut total,
-        );
-        let sum = term.finish(i, &total);
+        let (flatness, spin) = (1.0, [0.0; 3]);
+        let beside = BesideWall { pressure_gradient, lowest_pressure, flatness, spin };
+        term.add(i, &beside, pair, &mut total);
+        let sum = term.finish(i, &beside, &total);
         let mut rates = [Q::Rate::default()];
         Q::rates(&sum, &[i.density], &mut rates);
         rates[0]

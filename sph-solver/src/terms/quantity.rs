@@ -3,10 +3,10 @@
 use super::{Pair, lanes};
 use sph_kernels::{Lanes, Real};
 use sph_neighbors::CLUSTER;
-use std::ops::AddAssign;
+use std::ops::{AddAssign, SubAssign};
 
 /// What a group of pairs contributes to the change of a particle. Groups add up.
-pub trait Rate: Copy + Default + Send + Sync + AddAssign + 'static {}
+pub trait Rate: Copy + Default + Send + Sync + AddAssign + SubAssign + 'static {}
 
 impl Rate for DensityRate {}
 
@@ -123,6 +123,16 @@ impl<const D: usize> AddAssign for SlopeSum<D> {
     }
 }
 
+impl<const D: usize> SubAssign for SlopeSum<D> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        for k in 0..D {
+            self.sum[k] -= other.sum[k];
+            (0..D).for_each(|l| self.moments[k][l] -= other.moments[k][l]);
+        }
+    }
+}
+
 /// A sum of gradients, 1/m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VectorSum<const D: usize>(pub [f64; D]);
@@ -180,6 +190,33 @@ impl<const D: usize> AddAssign for Acceleration<D> {
 impl<const D: usize> Default for Acceleration<D> {
     fn default() -> Self {
         Self([0.0; D])
+    }
+}
+
+impl SubAssign for DensityRate {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        self.rate -= other.rate;
+        self.fluid -= other.fluid;
+        self.wall -= other.wall;
+    }
+}
+
+impl<const D: usize> SubAssign for Acceleration<D> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        for (sum, part) in self.0.iter_mut().zip(other.0) {
+            *sum -= part;
+        }
+    }
+}
+
+impl<const D: usize> SubAssign for VectorSum<D> {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        for (sum, part) in self.0.iter_mut().zip(other.0) {
+            *sum -= part;
+        }
     }
 }
 

@@ -65,7 +65,7 @@ impl<const D: usize, K: Kernel> WallTerm<D, Crowding> for Shifting<K> {
     }
 
     #[inline(always)]
-    fn finish<L: Lanes>(&self, _: &Target<D, L>, total: &[L; D]) -> [L; D] {
+    fn finish<L: Lanes>(&self, _: &Target<D, L>, _: &BesideWall<D, L>, total: &[L; D]) -> [L; D] {
         *total
     }
 }

@@ -38,8 +38,13 @@ impl<const D: usize> WallTerm<D, Deviation> for WallContinuity {
     }
 
     #[inline(always)]
-    fn finish<L: Lanes>(&self, i: &Target<D, L>, total: &WallFlux<D, L>) -> [L; 3] {
-        [dot(&i.velocity, &total.push.felt()), L::zero(), total.filled]
+    fn finish<L: Lanes>(
+        &self,
+        i: &Target<D, L>,
+        beside: &BesideWall<D, L>,
+        total: &WallFlux<D, L>,
+    ) -> [L; 3] {
+        [dot(&i.velocity, &total.push.felt(beside.flatness)), L::zero(), total.filled]
     }
 }
 

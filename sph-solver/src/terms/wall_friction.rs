@@ -51,7 +51,7 @@ impl<const D: usize> WallTerm<D, Pressure> for NoSlip {
     }
 
     #[inline(always)]
-    fn finish<L: Lanes>(&self, _: &Target<D, L>, total: &[L; D]) -> [L; D] {
+    fn finish<L: Lanes>(&self, _: &Target<D, L>, _: &BesideWall<D, L>, total: &[L; D]) -> [L; D] {
         *total
     }
 }

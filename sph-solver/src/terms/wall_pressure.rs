@@ -13,6 +13,9 @@ use sph_kernels::Lanes;
 /// dissipation lie along the normal, so a plane takes no momentum from what flows along it. Near a free
 /// surface p_low is 0 and a wall never sucks, as in Adami, Hu & Adams (2012); elsewhere it is the
 /// pressure at which the fluid cavitates.
+///
+/// At a thin solid pressure and dissipation are 1 + max(0, 1 − z/(dp/2))² times as large, z the height of the
+/// particle over its surface: there is little way in which to stop it.
 #[derive(Debug, Clone, Copy)]
 pub struct WallPressure {
     /// c0, m/s. With 0 there is no dissipation.
@@ -42,13 +45,26 @@ impl<const D: usize> WallTerm<D, Pressure> for WallPressure {
         let speed = -dot(&i.velocity, &pair.normal);
         let limited = (speed.max(-speed) * lanes(6.0)).min(lanes(self.sound_speed));
         let dissipation = (speed + speed) * i.density * limited;
-        total.add(change - pressures, -change, pair);
-        total.damp(-dissipation, pair);
+        // What has come too close to a thin wall is kept from passing through it.
+        let (even, damping) = match pair.squeezed {
+            None => (change - pressures, dissipation),
+            Some(squeezed) => {
+                let more = squeezed * pressures.max(L::zero());
+                (change - pressures - more, squeezed.mul_add(dissipation, dissipation))
+            }
+        };
+        total.add(even, -change, pair);
+        total.damp(-damping, pair);
     }
 
     #[inline(always)]
-    fn finish<L: Lanes>(&self, _: &Target<D, L>, total: &WallPush<D, L>) -> [L; D] {
-        total.felt()
+    fn finish<L: Lanes>(
+        &self,
+        _: &Target<D, L>,
+        beside: &BesideWall<D, L>,
+        total: &WallPush<D, L>,
+    ) -> [L; D] {
+        total.felt(beside.flatness)
     }
 }
 
@@ -95,6 +111,18 @@ mod tests {
         let factor = 2.0 * 50.0 * 0.01 * 0.1 / 1000.0;
         assert!((at(-3e4) + 3e4 * factor).abs() < 1e-9);
         assert!((at(-1e9) + 1e5 * factor).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_thin_wall_pushes_harder_on_what_is_too_close() {
+        let push = |squeezed| {
+            let state = ([0.0, -1.0], 500.0);
+            let (i, pair) = scalar::wall([0.04, 0.1], [0.0, 1.0], 0.05, state, 0.01, -50.0);
+            let pair = (i, WallPair { squeezed, ..pair });
+            scalar::wall_rate::<Pressure, _>(&WALL, &pair, [0.0; 2], 0.0).0[1]
+        };
+        assert_eq!(push(Some(0.0)), push(None));
+        assert!((push(Some(1.0)) / push(None) - 2.0).abs() < 1e-12);
     }
 
     #[test]

@@ -8,7 +8,8 @@ use sph_kernels::Lanes;
 /// slides along. So of that part of c that is the same for all elements, a plane leaves the push along
 /// its normal alone. Near an edge or a corner, where the integral has parts along several faces, all of
 /// it is left; what tells is the mean normal n̄ = Σ w n / Σ w over the elements that the particle sees,
-/// which has the length 1 where all of them are of one plane.
+/// which has the length 1 where all of them are of one plane. A sum is over one solid; whether others make
+/// a corner with it, their [`WallNormals`](super::WallNormals) tell.
 #[derive(Debug, Clone, Copy)]
 pub struct WallPush<const D: usize, L> {
     /// Σ c w r.
@@ -25,6 +26,12 @@ pub struct WallPush<const D: usize, L> {
 const PLANE: f64 = 0.9995;
 /// |n̄|² up to which it counts as anything else.
 const BENT: f64 = 0.995;
+
+/// How much walls with this |n̄|² count as a plane, from 0 to 1.
+#[inline(always)]
+pub fn share_of_plane<L: Lanes>(mean2: L) -> L {
+    ((mean2 - lanes(BENT)) * lanes(1.0 / (PLANE - BENT))).max(L::zero()).min(lanes(1.0))
+}
 
 impl<const D: usize, L: Lanes> WallPush<D, L> {
     /// Nothing added yet.
@@ -70,15 +77,14 @@ impl<const D: usize, L: Lanes> WallPush<D, L> {
         }
     }
 
-    /// Σ c w r as the particle feels it.
+    /// Σ c w r as the particle feels it. `flatness` is 1 where all the walls around are of one plane, 0
+    /// where other solids make a corner with this one.
     #[inline(always)]
-    pub fn felt(&self) -> [L; D] {
+    pub fn felt(&self, flatness: L) -> [L; D] {
         // Weights are not positive, and small in any units; without any the push is zero as well.
         let inverse = lanes::<L>(1.0).div(self.weight.min(lanes(-1e-30)));
         let normal: [L; D] = std::array::from_fn(|k| self.normal[k] * inverse);
-        let plane = ((dot(&normal, &normal) - lanes(BENT)) * lanes(1.0 / (PLANE - BENT)))
-            .max(L::zero())
-            .min(lanes(1.0));
+        let plane = flatness * share_of_plane(dot(&normal, &normal));
         std::array::from_fn(|k| self.push[k] - plane * self.across[k] + self.lean[k])
     }
 }
@@ -89,12 +95,14 @@ mod tests {
 
     fn pair(offset: [f64; 2], normal: [f64; 2], weight: f64) -> WallPair<2, f64> {
         let distance2 = offset[0] * offset[0] + offset[1] * offset[1];
+        let (depth, squeezed) = (0.1, None);
         WallPair {
             offset,
             distance2,
             normal,
-            depth: 0.1,
+            depth,
             weight,
+            squeezed,
             unit: 1.0,
             per_unit: 1.0,
             stretch: None,
@@ -106,7 +114,7 @@ mod tests {
         for (offset, normal) in elements {
             push.add(3.0, 0.0, &pair(*offset, *normal, -2.0));
         }
-        push.felt()
+        push.felt(1.0)
     }
 
     #[test]
@@ -126,10 +134,18 @@ mod tests {
     }
 
     #[test]
+    fn a_plane_in_the_corner_with_another_solid_pushes_as_it_is() {
+        let mut push = WallPush::<2, f64>::zero();
+        push.add(3.0, 0.0, &pair([1.0, 2.0], [0.0, 1.0], -2.0));
+        assert_eq!(push.felt(0.0), [-6.0, -12.0]);
+        assert_eq!(push.felt(1.0), [0.0, -12.0]);
+    }
+
+    #[test]
     fn what_differs_between_elements_is_left() {
         let mut push = WallPush::<2, f64>::zero();
         push.add(0.0, 1.0, &pair([1.0, 2.0], [0.0, 1.0], -2.0));
-        assert_eq!(push.felt(), [-2.0, -4.0]);
+        assert_eq!(push.felt(1.0), [-2.0, -4.0]);
     }
 
     #[test]
@@ -141,14 +157,14 @@ mod tests {
             let speed = -normal[0];
             push.damp(-speed, &pair([-0.5 * side, 1.0], normal, -2.0));
         }
-        assert!(push.felt()[0] < 0.0, "{:?}", push.felt());
+        assert!(push.felt(1.0)[0] < 0.0, "{:?}", push.felt(1.0));
     }
 
     #[test]
     fn nothing_pushes_nowhere() {
-        assert_eq!(WallPush::<2, f64>::zero().felt(), [0.0; 2]);
+        assert_eq!(WallPush::<2, f64>::zero().felt(1.0), [0.0; 2]);
         let mut beyond = WallPush::<2, f64>::zero();
         beyond.add(3.0, 1.0, &pair([1.0, 2.0], [0.0, 1.0], 0.0));
-        assert_eq!(beyond.felt(), [0.0; 2]);
+        assert_eq!(beyond.felt(1.0), [0.0; 2]);
     }
 }

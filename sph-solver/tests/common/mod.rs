@@ -56,7 +56,12 @@ impl<const D: usize> Case<D> {
             lowest_pressure: f64::NEG_INFINITY,
             closed: false,
             on_lost: OnLost::Stop,
-            solids: vec![SolidModel { name: "tank".into(), center: [0.0; D], slips: true }],
+            solids: vec![SolidModel {
+                name: "tank".into(),
+                center: [0.0; D],
+                slips: true,
+                thin: None,
+            }],
         }
     }
 

@@ -143,6 +143,7 @@ pub fn packed<const D: usize>(
                     normal: around.normals[w],
                     depth: around.depths[w],
                     weight: gradient(radius, distance2.sqrt()) * around.volumes[w],
+                    squeezed: None,
                     unit: 1.0,
                     per_unit: 1.0,
                     stretch: Some(WallStretch {
@@ -153,7 +154,7 @@ pub fn packed<const D: usize>(
                 };
                 push.add(1.0, 0.0, &pair);
             }
-            let push = push.felt();
+            let push = push.felt(1.0);
             (0..D).for_each(|k| sum[k] += push[k]);
             let factor = RATE * own * own;
             let step: [f64; D] = std::array::from_fn(|k| MEMORY * moves[t][k] - factor * sum[k]);
