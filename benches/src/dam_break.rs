@@ -69,7 +69,12 @@ impl DamBreak {
             lowest_pressure: f64::NEG_INFINITY,
             closed: false,
             on_lost: OnLost::Remove,
-            solids: vec![SolidModel { name: "box".into(), center: [0.0; 3], slips: true }],
+            solids: vec![SolidModel {
+                name: "box".into(),
+                center: [0.0; 3],
+                slips: true,
+                thin: None,
+            }],
         }
     }
 
