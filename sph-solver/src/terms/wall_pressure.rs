@@ -118,7 +118,7 @@ mod tests {
         let push = |squeezed| {
             let state = ([0.0, -1.0], 500.0);
             let (i, pair) = scalar::wall([0.04, 0.1], [0.0, 1.0], 0.05, state, 0.01, -50.0);
-            let pair = (i, crate::terms::WallPair { squeezed, ..pair });
+            let pair = (i, WallPair { squeezed, ..pair });
             scalar::wall_rate::<Pressure, _>(&WALL, &pair, [0.0; 2], 0.0).0[1]
         };
         assert_eq!(push(Some(0.0)), push(None));
