@@ -82,6 +82,11 @@ impl<const D: usize> Model<D> {
         self.solids.get(usize::from(number))
     }
 
+    /// What a thin solid of this number is.
+    pub fn thin(&self, number: u16) -> Option<ThinWall> {
+        self.solid(number).and_then(|solid| solid.thin)
+    }
+
     /// Speed above which the run has diverged, m/s.
     pub fn speed_limit(&self) -> f64 {
         DIVERGED_MACH * self.limits.sound_speed

@@ -103,6 +103,20 @@ impl<const D: usize> WallElements<D> {
         self.columns().permute(index);
     }
 
+    /// Those that a picture shows: of a thin solid the uppermost layer, as the others lie beyond it.
+    #[must_use]
+    pub fn shown(mut self, thin: impl Fn(u16) -> Option<ThinWall>) -> Self {
+        let is_shown = |i: &u32| {
+            let i = *i as usize;
+            thin(self.solid[i]).is_none_or(|thin| self.depth[i] < thin.spacing)
+        };
+        let index: Vec<u32> = (0..self.len() as u32).filter(is_shown).collect();
+        if index.len() < self.len() {
+            self.keep(&index);
+        }
+        self
+    }
+
     /// The columns themselves, ids first.
     pub fn into_columns(self) -> WallColumns<D> {
         (self.id, self.solid, self.volume, self.depth, self.position, self.normal)

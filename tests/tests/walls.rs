@@ -79,6 +79,64 @@ fn what_slides_down_a_plane_falls_freely_along_it() {
     }
 }
 
+/// Nothing is under pressure in a fluid that falls: a wall beside it does not carry it, from the first step on.
+#[test]
+fn what_falls_along_a_wall_falls_freely() {
+    let text = r#"name = "fall"
+dimension = 2
+end_time = 0.1
+gravity = [0, -9.81]
+[domain]
+min = [-1, -1]
+max = [1, 1]
+[numerics]
+spacing = 0.04
+[fluid.water]
+density = 1000.0
+regions = [{ box = { min = [0, 0], max = [0.4, 0.4] } }]
+[[solid]]
+name = "wall"
+plane = { point = [0, 0], normal = [1, 0] }
+[output]
+energies = 0.05
+"#;
+    let energies = run(text).table("energies");
+    let (times, momentum) = (energies.times(), energies.column("momentum_y"));
+    let last = times.len() - 1;
+    let share = momentum[last] / (-9.81 * 1000.0 * 0.16 * times[last]);
+    assert!((share - 1.0).abs() < 1e-3, "{share} of free fall");
+}
+
+/// Water on both sides of a wall that stands in its tank as a solid of its own stays at rest.
+#[test]
+fn water_in_the_corner_of_two_solids_stays_at_rest() {
+    let text = r#"name = "corner"
+dimension = 2
+end_time = 2.0
+gravity = [0, -9.81]
+[numerics]
+spacing = 0.02
+[fluid.water]
+density = 1000.0
+pressure = "hydrostatic"
+regions = [{ box = { min = [0, 0], max = [0.4, 0.4] } }, { box = { min = [0.52, 0], max = [1, 0.4] } }]
+[[solid]]
+name = "tank"
+box = { min = [0, 0], max = [1, 0.8] }
+fluid_side = "inside"
+[[solid]]
+name = "wall"
+box = { min = [0.4, -0.1], max = [0.52, 0.8] }
+fluid_side = "outside"
+[output]
+energies = 0.05
+"#;
+    let speed = run(text).table("energies").column("speed");
+    let late = speed[speed.len() / 2..].iter().copied().fold(0.0, f64::max);
+    let scale = f64::sqrt(9.81 * 0.4);
+    assert!(late < 0.01 * scale, "{} √(gH)", late / scale);
+}
+
 /// Mass of the water of a scene, kg per metre of depth.
 fn mass_of(text: &str) -> f64 {
     let summary = run(text).summary();

@@ -231,7 +231,7 @@ impl<const D: usize> Bodies<D> {
         let set = |moving: &Moving<D>| {
             let elements = &moving.body.elements;
             let frame = self.frame(moving.body.solid)?;
-            let thin = model.solid(moving.body.solid).and_then(|solid| solid.thin);
+            let thin = model.thin(moving.body.solid);
             let faces_wall = |x: &[f64; D], n: &[f64; D], depth: f64| {
                 thin.is_some_and(|thin| {
                     let above = depth + CLOSED * thin.spacing;

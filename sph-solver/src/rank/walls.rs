@@ -56,7 +56,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             }
         }
         self.solid = Parts { local: owned - inner, inner, outer: all.len() - owned };
-        let thin = |number| model.solid(number).and_then(|solid| solid.thin);
+        let thin = |number| model.thin(number);
         self.walls = team.install(|| WallSet::of_all(&all, search, encoder, thin))?;
         self.settled = true;
         Ok(())

@@ -299,7 +299,8 @@ impl<const D: usize> Outputs<'_, D> {
         }
         let mut columns = simulation.rank().elements.clone().into_columns();
         gather_by_id(self.comm, &mut columns, |columns| columns.0.clone())?;
-        let walls = WallElements::from_columns(columns);
+        let thin = |number| simulation.model().thin(number);
+        let walls = WallElements::from_columns(columns).shown(thin);
         let density0 = simulation.model().equation_of_state.density0();
         match files {
             Some(files) if !walls.is_empty() => files.walls(&walls, density0),
@@ -508,7 +509,8 @@ impl<const D: usize> Outputs<'_, D> {
             if let Some(files) = files {
                 let (id, position, velocity, density) = columns;
                 let all = FullStep { id, position, velocity, density, mass: vec![], ..*full };
-                files.snapshot(model, &all, &simulation.bodies().in_full_step())?;
+                let moving = simulation.bodies().in_full_step().shown(|number| model.thin(number));
+                files.snapshot(model, &all, &moving)?;
             }
             self.snapshots.done(full.time);
         }
