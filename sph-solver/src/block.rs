@@ -19,7 +19,8 @@ pub struct FluidColumns<'a, const D: usize> {
     pub pressure_gradient: &'a mut [[f64; D]],
     /// Lowest pressures that a wall has towards them, Pa.
     pub lowest_wall_pressure: &'a mut [f64],
-    /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
+    /// Velocities by which they are shifted, as shares of the largest speed; nothing if the scheme does not
+    /// shift.
     pub shift: &'a mut [[f64; D]],
 }
 
@@ -67,7 +68,8 @@ pub struct Block<'a, const D: usize, S, R> {
     pub pressure_gradient: &'a mut [[f64; D]],
     /// Lowest pressures that a wall has towards them, Pa.
     pub lowest_wall_pressure: &'a mut [f64],
-    /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
+    /// Velocities by which they are shifted, as shares of the largest speed; nothing if the scheme does not
+    /// shift.
     pub shift: &'a mut [[f64; D]],
     /// Results of the flux loop.
     pub rates: &'a mut [R],

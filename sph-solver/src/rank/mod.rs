@@ -42,7 +42,8 @@ pub struct Rank<const D: usize, S: Real> {
     pub walls: Vec<WallSet<D, S>>,
     /// Lowest pressure that a wall has towards each owned fluid particle, Pa: the density pass says.
     lowest_wall_pressure: Vec<f64>,
-    /// Velocity by which each owned fluid particle is shifted, m/s; nothing if none is.
+    /// Velocity by which each owned fluid particle is shifted, as a share of the largest speed; nothing if
+    /// none is.
     shift: Vec<[f64; D]>,
     /// Results of the force sweep.
     pub(crate) force_rate: Vec<Acceleration<D>>,
