@@ -22,7 +22,8 @@ pub struct FluidColumns<'a, const D: usize> {
     pub lowest_wall_pressure: &'a mut [f64],
     /// How much the walls around them count as one plane.
     pub flatness: &'a mut [f64],
-    /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
+    /// Velocities by which they are shifted, as shares of the largest speed; nothing if the scheme does not
+    /// shift.
     pub shift: &'a mut [[f64; D]],
     /// ∇R of each over the largest support radius, 1/m; nothing where all are the same.
     pub radius_slope: &'a [[f64; D]],
@@ -78,7 +79,8 @@ pub struct Block<'a, const D: usize, S, R> {
     pub lowest_wall_pressure: &'a mut [f64],
     /// How much the walls around them count as one plane.
     pub flatness: &'a mut [f64],
-    /// Velocities by which they are shifted, m/s; nothing if the scheme does not shift.
+    /// Velocities by which they are shifted, as shares of the largest speed; nothing if the scheme does not
+    /// shift.
     pub shift: &'a mut [[f64; D]],
     /// ∇R of each over the largest support radius, 1/m; nothing where all are the same.
     pub radius_slope: &'a [[f64; D]],

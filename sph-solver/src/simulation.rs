@@ -366,9 +366,9 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         if self.model.on_lost == OnLost::Stop {
             let first = gone.iter().min_by_key(|one| one.id).map(|one| (one.id, one.position));
             if let Some((id, position)) = first_of_all(&self.comm, first.as_ref())? {
-                let position = position.to_vec();
-                let (lower, upper) = self.model.domain;
+                let (lower, upper) = &self.model.domain;
                 let (lower, upper) = (lower.to_vec(), upper.to_vec());
+                let position = position.to_vec();
                 return Err(RunError::Left { id, position, time, lower, upper });
             }
         }
@@ -415,9 +415,8 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
     fn density_pass(&mut self) -> Result<Extremes, RunError> {
         let _timer = self.timings.measure(Phase::Density);
         let encoder = self.encoder();
-        let extremes = self.pending.to_array();
         let mut maxima = [0.0; 10];
-        maxima[..9].copy_from_slice(&extremes);
+        maxima[..9].copy_from_slice(&self.pending.to_array());
         maxima[9] = self.request.0;
         let view = self.rank.passing();
         let pass = DensityPass {
@@ -426,7 +425,6 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             encoder,
             model: &self.model,
             dt: self.clock.dt,
-            speed: self.clock.extremes.speed2.sqrt(),
         };
         let exchange = Exchange {
             comm: &self.comm,
@@ -464,6 +462,8 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             loads: self.load_scale,
             dt_before,
             dt,
+            // As for the time step: known to all ranks, and after a resume.
+            speed: self.reduced.speed2.sqrt(),
             bodies: &self.bodies,
         };
         let exchange =

@@ -112,6 +112,21 @@ fn moving_solids_give_and_lost_particles_take() {
     assert!(share.abs() < 0.01, "{summary:#}");
 }
 
+/// A box through still water: around its edges too, walls only take from what moves along their normals.
+#[test]
+fn damping_by_walls_never_gives() {
+    let folder = tempfile::tempdir().unwrap();
+    let body = "[[solid]]\nname = \"box\"\nbox = { min = [0.2, 0.1], max = [0.4, 0.2] }\n\
+        fluid_side = \"outside\"\nmotion = { velocity = [0.8, 0.0] }\n\n[[probe]]";
+    let text = SMALL.replace("max = [0.3, 0.4]", "max = [1.0, 0.3]").replace("[[probe]]", body);
+    let results = Results::of(Run::new(write_scene(folder.path(), &text)).threads(1).set(ON));
+    let table = results.table("energies");
+    let taken = table.column("to_wall_damping");
+    assert!(taken.windows(2).all(|pair| pair[1] >= pair[0]) && taken[taken.len() - 1] > 1.0);
+    let speed = table.column("speed").into_iter().fold(0.0, f64::max);
+    assert!(speed < 2.0, "{speed} m/s around a box of 0.8 m/s");
+}
+
 #[test]
 fn it_is_the_same_on_any_ranks_and_after_a_resume() {
     let folder = tempfile::tempdir().unwrap();

@@ -84,6 +84,17 @@ fn on_the_same_rank() {
 }
 
 #[test]
+fn with_particles_that_are_shifted() {
+    let run = |end| SCENE.run_until(end).set("numerics.scheme=delta-plus");
+    let expected = Results::of(run(SCENE.end_time).threads(1)).digest();
+    assert_ne!(expected, Results::of(SCENE.run().threads(1)).digest(), "nothing was shifted");
+    let results = Results::new();
+    results.add(with_checkpoints(run(STOP)));
+    results.add(run(SCENE.end_time).ranks(2).resume());
+    assert_eq!(results.digest(), expected);
+}
+
+#[test]
 fn on_another_number_of_ranks_and_back() {
     let results = stopped();
     results.add(with_checkpoints(frequent(SCENE.run_until(1.3 * STOP))).ranks(3).resume());

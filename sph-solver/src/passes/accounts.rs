@@ -74,7 +74,7 @@ impl<const D: usize, S: Real + Pod> ForcePass<'_, D, S> {
             }
             taken.add(Sink::Driving, kicks.taken(&driving, &[0.0; D]).0);
             if let Some(shift) = block.shift.get(k) {
-                taken.add(Sink::Shifting, [0.0, mass * self.dt * dot(&open, shift)]);
+                taken.add(Sink::Shifting, [0.0, mass * self.dt * self.speed * dot(&open, shift)]);
             }
         }
     }

@@ -27,8 +27,6 @@ pub struct DensityPass<'a, const D: usize, S> {
     pub model: &'a Model<D>,
     /// Step from the old density to the new one, s.
     pub dt: f64,
-    /// Largest speed of the flow, m/s.
-    pub speed: f64,
 }
 
 impl<const D: usize, S: Real + Pod> DensityPass<'_, D, S> {
@@ -98,7 +96,7 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for DensityPass<'_, D, S> {
                 let radius = self.model.radius_of(block.mass[k]);
                 // Where there is no free surface, a gap is one that is to be closed.
                 let filled = if self.model.closed { 1.0 } else { rate.fluid + rate.wall };
-                *crowding = shift(crowding, filled, radius, self.speed);
+                *crowding = shift(crowding, filled, radius);
             }
             block.density[k] = density;
             block.new[k] = record(

@@ -32,6 +32,8 @@ pub struct ForcePass<'a, const D: usize, S> {
     pub dt_before: f64,
     /// Step that begins here, s.
     pub dt: f64,
+    /// Largest speed of the flow, m/s: what shifts are shares of.
+    pub speed: f64,
     /// Solids that move.
     pub bodies: &'a Bodies<D>,
 }
@@ -142,7 +144,7 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for ForcePass<'_, D, S> {
             let now = kicked(block.velocity[k], 0.5 * self.dt_before, a, gravity);
             let velocity = kicked(now, 0.5 * self.dt, a, gravity);
             let drift = match block.shift.get(k) {
-                Some(shift) => std::array::from_fn(|d| velocity[d] + shift[d]),
+                Some(shift) => std::array::from_fn(|d| velocity[d] + self.speed * shift[d]),
                 None => velocity,
             };
             let position: [f64; D] =

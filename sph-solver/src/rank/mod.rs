@@ -50,7 +50,8 @@ pub struct Rank<const D: usize, S: Real> {
     lowest_wall_pressure: Vec<f64>,
     /// How much the walls around each owned fluid particle count as one plane: the density pass says.
     flatness: Vec<f64>,
-    /// Velocity by which each owned fluid particle is shifted, m/s; nothing if none is.
+    /// Velocity by which each owned fluid particle is shifted, as a share of the largest speed; nothing if
+    /// none is.
     shift: Vec<[f64; D]>,
     /// ∇R of each owned fluid particle over the largest support radius, 1/m; nothing where all are the
     /// same.

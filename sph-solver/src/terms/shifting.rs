@@ -76,21 +76,18 @@ const SURFACE: f64 = 0.9;
 /// From here on it is shifted in full.
 const INSIDE: f64 = 0.97;
 
-/// The velocity (m/s) by which a particle is shifted: −U R Σ with the sum of [`Shifting`], at most U/2,
-/// with U the largest speed of the flow (m/s) and `filled` the share of the support that is filled.
+/// The largest shift as a share of the largest speed.
+const MOST: f64 = 0.5;
+
+/// The velocity by which a particle is shifted, as a share of the largest speed U of the flow: −R Σ with the
+/// sum of [`Shifting`], at most ½, with `filled` the share of the support that is filled.
 ///
-/// Source: Sun et al. (2019), eq. 12 and 13, whose factor Ma 2h c0 is this U R.
-pub fn shift<const D: usize>(
-    crowding: &[f64; D],
-    filled: f64,
-    support_radius: f64,
-    speed: f64,
-) -> [f64; D] {
+/// Source: Sun et al. (2019), eq. 12 and 13, whose factor Ma 2h c0 is U R.
+pub fn shift<const D: usize>(crowding: &[f64; D], filled: f64, support_radius: f64) -> [f64; D] {
     let inside = ((filled - SURFACE) / (INSIDE - SURFACE)).clamp(0.0, 1.0);
-    let shift = crowding.map(|sum| -inside * speed * support_radius * sum);
+    let shift = crowding.map(|sum| -inside * support_radius * sum);
     let length = shift.iter().map(|s| s * s).sum::<f64>().sqrt();
-    let most = 0.5 * speed;
-    if length > most { shift.map(|s| s * (most / length)) } else { shift }
+    if length > MOST { shift.map(|s| s * (MOST / length)) } else { shift }
 }
 
 #[cfg(test)]
@@ -105,14 +102,13 @@ mod tests {
         let pair = scalar::pair([-0.1, 0.0], ([0.0; 2], [0.0; 2]), (0.0, 0.0), 0.01, -50.0);
         let VectorSum(sum) = scalar::rate::<Crowding, _>(&term, &pair);
         assert!((sum[0] - 1.2 * -50.0 * 0.01 * -0.1).abs() < 1e-12 && sum[1] == 0.0);
-        let [u, v] = shift(&sum, 1.0, 0.3, 2.0);
-        assert!((u + 2.0 * 0.3 * sum[0]).abs() < 1e-12 && v == 0.0);
+        let [u, v] = shift(&sum, 1.0, 0.3);
+        assert!((u + 0.3 * sum[0]).abs() < 1e-12 && v == 0.0);
     }
 
     #[test]
     fn shifts_are_limited_and_end_at_the_surface() {
-        assert_eq!(shift(&[-1e3, 0.0], 1.0, 0.3, 2.0), [1.0, 0.0]);
-        assert_eq!(shift(&[-1e3, 0.0], 0.8, 0.3, 2.0), [0.0, 0.0]);
-        assert_eq!(shift(&[1.0, 2.0], 1.0, 0.3, 0.0), [-0.0, -0.0]);
+        assert_eq!(shift(&[-1e3, 0.0], 1.0, 0.3), [0.5, 0.0]);
+        assert_eq!(shift(&[-1e3, 0.0], 0.8, 0.3), [0.0, 0.0]);
     }
 }

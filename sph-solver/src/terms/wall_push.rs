@@ -68,10 +68,11 @@ impl<const D: usize, L: Lanes> WallPush<D, L> {
 
     /// Adds what an element does along its own normal alone, with the coefficient `along`: a damping of the
     /// velocity along the normal must act along it too. Along the line to the element it would drive on what
-    /// flows around a ball.
+    /// flows around a ball. So would elements of a face that the particle is behind, as beyond an edge: they
+    /// do nothing.
     #[inline(always)]
     pub fn damp(&mut self, along: L, pair: &WallPair<D, L>) {
-        let size = along * pair.weight * dot(&pair.offset, &pair.normal);
+        let size = along * pair.weight * dot(&pair.offset, &pair.normal).max(L::zero());
         for k in 0..D {
             self.push[k] = size.mul_add(pair.normal[k], self.push[k]);
         }
@@ -158,6 +159,14 @@ mod tests {
             push.damp(-speed, &pair([-0.5 * side, 1.0], normal, -2.0));
         }
         assert!(push.felt(1.0)[0] < 0.0, "{:?}", push.felt(1.0));
+    }
+
+    #[test]
+    fn damping_drives_nothing_beyond_an_edge() {
+        // Beside a block, below its top: elements under the top face up.
+        let mut push = WallPush::<2, f64>::zero();
+        push.damp(-1.0, &pair([-1.0, -0.5], [0.0, 1.0], -2.0));
+        assert_eq!(push.felt(1.0), [0.0; 2]);
     }
 
     #[test]
