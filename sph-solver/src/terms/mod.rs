@@ -33,7 +33,7 @@ pub use pressure::SymmetricPressure;
 pub use quantity::{
     Acceleration, Crowding, DensityRate, Deviation, Pressure, Quantity, Rate, VectorSum,
 };
-pub use shifting::{Shifting, shift};
+pub use shifting::{MOST, Shifting, shift};
 pub use viscosity::LaminarViscosity;
 pub use wall_continuity::WallContinuity;
 pub use wall_friction::NoSlip;
