@@ -14,9 +14,9 @@ use crate::scheme::Scheme;
 use crate::space::PairScale;
 use crate::state::State;
 use crate::team::Team;
-use crate::terms::Acceleration;
+use crate::terms::{Acceleration, MOST};
 use crate::timestep::Skin;
-use crate::timings::{Phase, Timings};
+use crate::timings::{Counters, Phase, Timings};
 use crate::walls::WallElements;
 use bytemuck::Pod;
 use sph_decomp::{Balancer, Collectives, Communicator, Evenness, Exposed, Load, Metered};
@@ -33,6 +33,8 @@ pub struct Clock {
     pub dt: f64,
     /// Largest speed and acceleration of the last force pass, over all ranks.
     pub extremes: Extremes,
+    /// Largest speed in any step before, squared, m²/s²: what shifts are shares of.
+    pub fastest2: f64,
 }
 
 /// Fluid particles of this rank at a full step, with everything at the same time.
@@ -63,21 +65,6 @@ pub struct Lost<const D: usize> {
     pub position: [f64; D],
     /// When, s.
     pub time: f64,
-}
-
-/// What a run counts besides time.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Counters {
-    /// Steps made by this process (not by the runs it continues).
-    pub steps: u64,
-    /// Fluid particles of this rank, summed over those steps.
-    pub particle_updates: u64,
-    /// Pairs in the lists of this rank (true ones and those in the skin), summed over both passes.
-    pub pairs: u64,
-    /// List rebuilds.
-    pub rebuilds: u64,
-    /// Steps in which a particle had moved farther than the lists allow for.
-    pub stale_steps: u64,
 }
 
 /// One rank of a run.
@@ -133,7 +120,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             Some(clock) => {
                 Clock { extremes: Extremes { velocity: start.velocity, ..clock.extremes }, ..clock }
             }
-            None => Clock { step: 0, time: 0.0, dt: 0.0, extremes: start },
+            None => Clock { step: 0, time: 0.0, dt: 0.0, extremes: start, fastest2: 0.0 },
         };
         if clock.step == 0 && state.pressure_gradient.is_empty() {
             // As at rest: the pressure gradient carries the weight.
@@ -447,6 +434,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
         let [extremes @ .., request] = maxima;
         self.request.1 = request;
         self.reduced = Extremes::from_array(extremes);
+        self.clock.fastest2 = self.clock.fastest2.max(self.reduced.speed2);
         Ok(self.reduced)
     }
 
@@ -462,8 +450,7 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
             loads: self.load_scale,
             dt_before,
             dt,
-            // As for the time step: known to all ranks, and after a resume.
-            speed: self.reduced.speed2.sqrt(),
+            speed: self.clock.fastest2.sqrt(),
             bodies: &self.bodies,
         };
         let exchange =
@@ -515,9 +502,9 @@ impl<'a, const D: usize, S: Real + Pod> Simulation<'a, D, S> {
     fn choose_step(&mut self, extremes: Extremes) -> Result<f64, RunError> {
         let extremes = extremes.max(self.bodies.extremes());
         let acceleration = extremes.acceleration2.sqrt();
-        // A shift is at most half of the largest speed, of the step before.
+        let speeds = [extremes.speed2, self.clock.fastest2].map(f64::sqrt);
         let moves = match self.scheme.shifting {
-            Some(_) => Extremes { speed2: 2.5 * extremes.speed2, ..extremes },
+            Some(_) => Extremes { speed2: (speeds[0] + MOST * speeds[1]).powi(2), ..extremes },
             None => extremes,
         };
         self.skin.moved(self.clock.dt, &moves);

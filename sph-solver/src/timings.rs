@@ -47,3 +47,18 @@ impl Drop for Timer {
         self.account.set(self.account.get() + self.start.elapsed().as_secs_f64());
     }
 }
+
+/// What a run counts besides time.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Counters {
+    /// Steps made by this process (not by the runs it continues).
+    pub steps: u64,
+    /// Fluid particles of this rank, summed over those steps.
+    pub particle_updates: u64,
+    /// Pairs in the lists of this rank (true ones and those in the skin), summed over both passes.
+    pub pairs: u64,
+    /// List rebuilds.
+    pub rebuilds: u64,
+    /// Steps in which a particle had moved farther than the lists allow for.
+    pub stale_steps: u64,
+}

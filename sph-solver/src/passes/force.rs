@@ -32,7 +32,7 @@ pub struct ForcePass<'a, const D: usize, S> {
     pub dt_before: f64,
     /// Step that begins here, s.
     pub dt: f64,
-    /// Largest speed of the flow, m/s: what shifts are shares of.
+    /// Largest speed that the flow has had, m/s: what shifts are shares of.
     pub speed: f64,
     /// Solids that move.
     pub bodies: &'a Bodies<D>,

@@ -87,6 +87,7 @@ pub fn save<const D: usize>(
         .with("mass", &state.mass)
         .with_attribute("dt", clock.dt)
         .with_attribute("largest_speed_squared", clock.extremes.speed2)
+        .with_attribute("largest_speed_squared_so_far", clock.fastest2)
         .with_attribute("largest_acceleration_squared", clock.extremes.acceleration2)
         .with_attribute("next_snapshot", progress.snapshots.next())
         .with_attribute("snapshot_interval", progress.snapshots.interval())
@@ -181,6 +182,7 @@ fn load_here<const D: usize>(
             acceleration2: attributes.f64("largest_acceleration_squared")?,
             ..Extremes::NONE
         },
+        fastest2: attributes.f64("largest_speed_squared_so_far")?,
     };
     let schedule = |interval: Option<f64>, output: &str| -> Result<Schedule, RunError> {
         let schedule = Schedule::new(interval);

@@ -2,7 +2,7 @@
 //! continues, and what it may change.
 
 use super::digest::Digest;
-use crate::scene::{Pressure, Probe, Scene};
+use crate::scene::{Pressure, Probe, Scene, Scheme};
 use crate::setup::Particles;
 
 /// Keys of a scene with their values, one a line.
@@ -142,7 +142,11 @@ fn settings(scene: &Scene, end_time: f64, checkpoints: Option<f64>) -> Values {
     let mut values = Values::default();
     values.set("end_time", &end_time);
     values.set("numerics.cfl", &*numerics.cfl);
-    values.set("numerics.artificial_viscosity", &scene.artificial_viscosity());
+    let alpha = scene.artificial_viscosity();
+    match (numerics.scheme, &numerics.artificial_viscosity) {
+        (Scheme::Auto, None) => values.set("numerics.artificial_viscosity", &"auto"),
+        _ => values.set("numerics.artificial_viscosity", &alpha),
+    }
     values.set("numerics.density_diffusion", &*numerics.density_diffusion);
     values.set("numerics.skin", &*numerics.skin);
     values.set("numerics.on_lost", &word(&numerics.on_lost));

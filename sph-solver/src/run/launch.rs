@@ -20,7 +20,7 @@ use crate::bodies::Bodies;
 use crate::error::RunError;
 use crate::model::{Model, OnLost, SolidModel};
 use crate::scene::{self, At, Field, ProbeKind, Scene};
-use crate::setup::{Constants, Particles, Setup};
+use crate::setup::{Constants, Particles, SchemeChoice, Setup};
 use crate::team::Team;
 use sph_decomp::{Blocking, Communicator, RanksError, Solo, ThreadRanks, check_same_build};
 use std::path::PathBuf;
@@ -96,6 +96,7 @@ struct Launch<const D: usize> {
     bodies: Bodies<D>,
     model: Model<D>,
     features: Features,
+    choice: SchemeChoice,
     /// Everything that determines the bits of the result: all ranks must have the same.
     fingerprint: String,
     plan: RunPlan<D>,
@@ -108,9 +109,9 @@ impl<const D: usize> Launch<D> {
     fn new(scene: &Scene, options: &RunOptions, stop: Stop) -> Result<Self, RunError> {
         let setup = Setup::<D>::new(scene)?;
         let notes = setup.notes();
-        let Setup { particles, constants, solids, bodies, at_rest, .. } = setup;
+        let Setup { particles, constants, solids, bodies, at_rest, choice, .. } = setup;
         let moving = bodies.iter().map(|body| body.solid).collect();
-        let features = features(scene, &constants, &particles);
+        let features = features(scene, choice.scheme, &constants, &particles);
         let model = model(&constants, solids);
         let fingerprint = fingerprint(&model, &features, &particles);
         let output = &scene.output;
@@ -150,6 +151,7 @@ impl<const D: usize> Launch<D> {
             shares,
             model,
             features,
+            choice,
             plan,
             ranks,
             threads,
@@ -233,6 +235,7 @@ impl<const D: usize> Launch<D> {
                         Precision::Mixed => "mixed",
                         Precision::Double => "double",
                     },
+                    scheme: self.choice.clone(),
                     communicator,
                     overlapped: !self.blocking,
                     one_process: communicator != "mpi",
@@ -268,6 +271,7 @@ fn model<const D: usize>(constants: &Constants<D>, solids: Vec<SolidModel<D>>) -
 
 fn features<const D: usize>(
     scene: &Scene,
+    scheme: scene::Scheme,
     constants: &Constants<D>,
     particles: &Particles<D>,
 ) -> Features {
@@ -282,7 +286,7 @@ fn features<const D: usize>(
             (_, alpha) if alpha > 0.0 => Viscosity::Artificial(alpha),
             _ => Viscosity::None,
         },
-        shifting: scene.numerics.scheme == scene::Scheme::DeltaPlus,
+        shifting: scheme == scene::Scheme::DeltaPlus,
         energy_budget: scene.output.energy_budget,
         walls: particles.kind.last().is_some_and(|&kind| kind > 0),
     }

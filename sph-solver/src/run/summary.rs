@@ -7,6 +7,7 @@ use super::load_log::LoadTotal;
 use super::samples::Budget;
 use crate::energy::Sink;
 use crate::error::RunError;
+use crate::setup::SchemeChoice;
 use crate::simulation::Simulation;
 use crate::timings::Phase;
 use bytemuck::Pod;
@@ -22,6 +23,8 @@ pub struct Meta {
     pub name: String,
     /// "mixed" or "double".
     pub precision: &'static str,
+    /// The scheme, and why.
+    pub scheme: SchemeChoice,
     /// "solo", "threads" or "mpi".
     pub communicator: &'static str,
     /// Whether messages travel while the local particles are computed.
@@ -41,6 +44,8 @@ pub struct Summary {
     pub dimension: usize,
     /// "mixed" or "double".
     pub precision: &'static str,
+    /// The scheme with its artificial viscosity, and why.
+    pub scheme: SchemeChoice,
     /// Vector unit that the sweeps used.
     pub simd: &'static str,
     /// Number of ranks.
@@ -282,6 +287,7 @@ pub fn summarize<const D: usize, S: Real + Pod>(
         version: env!("CARGO_PKG_VERSION"),
         dimension: D,
         precision: meta.precision,
+        scheme: meta.scheme,
         simd: sph_kernels::simd_level(),
         ranks: comm.size(),
         communicator: meta.communicator,

@@ -85,6 +85,10 @@ pub enum Scheme {
     /// them (δ⁺-SPH: Sun et al. 2017, 2019): keeps closed viscous flows even, at the price of one
     /// more sweep.
     DeltaPlus,
+    /// One of these by what the scene holds, with an artificial viscosity to suit unless one is given: a
+    /// closed flow is shifted, a fluid that rests under gravity is damped a little, one that collapses or hits is
+    /// not. `sph check` and `summary.json` say which, and why.
+    Auto,
 }
 
 /// Smoothing kernel.

@@ -41,6 +41,7 @@ impl<const D: usize> Setup<D> {
             bounding_box: [bounds.min.to_vec(), bounds.max.to_vec()],
             domain: [constants.domain.0.to_vec(), constants.domain.1.to_vec()],
             volume: VolumeOfFluid { regions: self.volume_of_regions, particles: self.volume() },
+            scheme: self.choice.clone(),
             spacing: constants.spacing,
             bands: self.bands(),
             smoothing_length: constants.smoothing_length,

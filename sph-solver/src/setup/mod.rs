@@ -5,6 +5,7 @@
 //! spacing from the last layer of fluid. Every particle has the mass ρ0 · spacing^D.
 
 mod bodies;
+mod choice;
 mod constants;
 mod domain;
 mod estimate;
@@ -28,6 +29,7 @@ mod thickness;
 mod volume;
 mod walls;
 
+pub use choice::{Beginning, Kind, SchemeChoice};
 pub use constants::{Constants, StepLimit, expected_speed, time_step};
 pub use geometry::Geometry;
 pub use neighbours::{Occupancy, lattice_neighbours, lattice_neighbours_beyond};
@@ -68,6 +70,8 @@ pub struct Setup<const D: usize> {
     pub expected_speed: f64,
     /// Largest speed at the start, m/s.
     pub initial_speed: f64,
+    /// The scheme, and why.
+    pub choice: SchemeChoice,
     /// Volume of the regions of fluid, m³ (m² in two dimensions).
     pub volume_of_regions: f64,
     notes_on_geometry: Vec<String>,
@@ -128,6 +132,25 @@ impl<const D: usize> Setup<D> {
         let radius_over_h = match numerics.kernel {
             Kernel::WendlandC2 => WendlandC2::RADIUS_OVER_H,
         };
+        // Answered by a search of the domain, so asked only where it matters.
+        let closed = numerics.scheme != scene::Scheme::Delta
+            && walls::is_closed(scene, &geometry, filling.position.len(), volume.as_deref())?;
+        let choice = match numerics.scheme {
+            scene::Scheme::Auto => SchemeChoice::made(
+                scene,
+                &Beginning {
+                    closed,
+                    speed: initial_speed,
+                    gravity: &gravity,
+                    height: height(&gravity, &fluid_box),
+                    position: &filling.position,
+                    spacing,
+                    solids: &solids,
+                    periodic: scene.periodic_axes(),
+                },
+            ),
+            _ => SchemeChoice::given(scene),
+        };
         let constants = Constants {
             spacing,
             smoothing_length: support_radius / radius_over_h,
@@ -145,12 +168,10 @@ impl<const D: usize> Setup<D> {
             equation_of_state,
             gravity,
             cfl: *numerics.cfl,
-            artificial_viscosity: scene.artificial_viscosity(),
+            artificial_viscosity: choice.artificial_viscosity,
             density_diffusion: *numerics.density_diffusion,
             viscosity: scene.viscosity(),
-            // Only a scheme that shifts particles asks, and an answer takes a search of the domain.
-            closed: numerics.scheme == scene::Scheme::DeltaPlus
-                && walls::is_closed(scene, &geometry, filling.position.len(), volume.as_deref())?,
+            closed: choice.scheme == scene::Scheme::DeltaPlus && closed,
             cavitation_pressure: fluid.cavitation_pressure.map(|pressure| *pressure),
             domain: (domain.min, domain.max),
             periods: domain::periods(scene, domain, spacing, Geometry::<D>::reach(scene))?,
@@ -179,6 +200,7 @@ impl<const D: usize> Setup<D> {
             bodies,
             expected_speed,
             initial_speed,
+            choice,
             volume_of_regions: volume::of_regions(regions, solids),
             notes_on_geometry: notes,
             meshes: geometry.meshes,

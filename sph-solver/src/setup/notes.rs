@@ -23,6 +23,7 @@ impl<const D: usize> Setup<D> {
                 ));
             }
         }
+        notes.extend(self.choice.note());
         let ratio = self.constants.sound_speed / self.expected_speed;
         if ratio < LOWEST_SOUND_SPEED {
             notes.push(format!(

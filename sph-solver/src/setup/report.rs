@@ -1,5 +1,6 @@
 //! What `sph check` says about a scene.
 
+use super::choice::SchemeChoice;
 use super::constants::StepLimit;
 use serde::Serialize;
 use std::fmt;
@@ -34,6 +35,8 @@ pub struct CheckReport {
     pub domain: [Vec<f64>; 2],
     /// Volume of the fluid.
     pub volume: VolumeOfFluid,
+    /// The scheme, and why.
+    pub scheme: SchemeChoice,
     /// Initial particle distance, m.
     pub spacing: f64,
     /// Particles by their spacing, the coarsest first; one band where all have the same.

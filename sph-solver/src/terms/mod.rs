@@ -37,7 +37,7 @@ pub use quantity::{
     VectorSum,
 };
 pub use radius_slope::RadiusSlope;
-pub use shifting::{Shifting, shift};
+pub use shifting::{MOST, Shifting, shift};
 pub use viscosity::LaminarViscosity;
 pub use wall_continuity::WallContinuity;
 pub use wall_friction::NoSlip;

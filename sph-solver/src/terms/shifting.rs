@@ -77,12 +77,13 @@ const SURFACE: f64 = 0.9;
 const INSIDE: f64 = 0.97;
 
 /// The largest shift as a share of the largest speed.
-const MOST: f64 = 0.5;
+pub const MOST: f64 = 0.5;
 
-/// The velocity by which a particle is shifted, as a share of the largest speed U of the flow: −R Σ with the
+/// The velocity by which a particle is shifted, as a share of the largest speed U that the flow has had: −R Σ with the
 /// sum of [`Shifting`], at most ½, with `filled` the share of the support that is filled.
 ///
-/// Source: Sun et al. (2019), eq. 12 and 13, whose factor Ma 2h c0 is U R.
+/// Source: Sun et al. (2019), eq. 12 and 13, whose factor Ma 2h c0 is U R. They take the speed that is
+/// expected; with that of the present step a decaying flow is no longer shifted enough.
 pub fn shift<const D: usize>(crowding: &[f64; D], filled: f64, support_radius: f64) -> [f64; D] {
     let inside = ((filled - SURFACE) / (INSIDE - SURFACE)).clamp(0.0, 1.0);
     let shift = crowding.map(|sum| -inside * support_radius * sum);
