@@ -110,7 +110,6 @@ impl ClusterList {
     ///
     /// When there is another number of targets or radii than `clusters` has, or
     /// [`Grid::check_radius`](crate::Grid::check_radius) refuses a radius.
-    #[expect(clippy::too_many_arguments, reason = "those of `rebuild` and two for the radii")]
     pub fn rebuild_with_radii<const D: usize>(
         &mut self,
         clusters: &Clusters,

@@ -54,7 +54,7 @@ pub struct Kept<const D: usize> {
     pub loads: Vec<f64>,
     /// Solids that move, as [`Bodies::save`](crate::bodies::Bodies::save) gave them.
     pub bodies: Vec<f64>,
-    /// The energy budget, as [`EnergyLog::save`](super::energy_log::EnergyLog::save) gave it; nothing
+    /// The energy budget, as `EnergyLog::save` gave it; nothing
     /// without one.
     pub energy: Vec<f64>,
 }
@@ -121,7 +121,7 @@ pub struct Loaded<const D: usize> {
     pub loads: Vec<f64>,
     /// Solids that move, as [`Bodies::save`](crate::bodies::Bodies::save) gave them.
     pub bodies: Vec<f64>,
-    /// The energy budget, as [`EnergyLog::save`](super::energy_log::EnergyLog::save) gave it.
+    /// The energy budget, as `EnergyLog::save` gave it.
     pub energy: Vec<f64>,
 }
 

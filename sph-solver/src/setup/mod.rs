@@ -110,7 +110,7 @@ impl<const D: usize> Setup<D> {
         let (filling, volume) = match &geometry.spacing {
             None => (Filling::new(scene, fluid, position, ends)?, None),
             Some(field) => {
-                let graded = graded::pack(scene, &geometry, field, position, ends)?;
+                let graded = graded::pack(scene, &geometry, field, &position, ends)?;
                 let GradedFluid { position, volume, ends } = graded;
                 (Filling::new(scene, fluid, position, ends)?, Some(volume))
             }
@@ -142,10 +142,10 @@ impl<const D: usize> Setup<D> {
                     closed,
                     speed: initial_speed,
                     gravity: &gravity,
-                    height: height(&gravity, &fluid_box),
+                    height: height(&gravity, fluid_box),
                     position: &filling.position,
                     spacing,
-                    solids: &solids,
+                    solids,
                     periodic: scene.periodic_axes(),
                 },
             ),

@@ -60,8 +60,8 @@ pub fn check(values: &Values<'_>) -> Result<(), SceneError> {
             }
         }
     }
-    let jitter = scene.fluid.values().filter_map(|fluid| fluid.jitter.as_ref());
-    match jitter.filter(|jitter| ***jitter > 0.0).next() {
+    let mut jitter = scene.fluid.values().filter_map(|fluid| fluid.jitter.as_ref());
+    match jitter.find(|jitter| ***jitter > 0.0) {
         Some(jitter) if !scene.refine.is_empty() => Err(values.invalid(
             jitter.place,
             "`jitter` shifts particles by parts of one spacing, and [[refine]] makes several"

@@ -227,6 +227,7 @@ pub const TABLES: &[Table] = &[
         examples: &[
             ("snapshots", "0.05"),
             ("energies", "0.005"),
+            ("energy_budget", "true"),
             ("checkpoint_every", "0.5"),
             ("fields", r#"["velocity", "pressure"]"#),
             ("region", "{ min = [0, 0], max = [1, 1] }"),

@@ -71,11 +71,11 @@ pub fn pack<const D: usize>(
     scene: &Scene,
     geometry: &Geometry<D>,
     field: &SpacingField<D>,
-    position: Vec<[f64; D]>,
+    position: &[[f64; D]],
     mut ends: Vec<usize>,
 ) -> Result<GradedFluid<D>, SceneError> {
     let tree = tree(scene, geometry, field)?;
-    let seeds = seeds::thinned(&tree, &position, &mut ends);
+    let seeds = seeds::thinned(&tree, position, &mut ends);
     let place = scene.numerics.spacing.place;
     let supports = *scene.numerics.support;
     // What is not fluid: everything outside of the regions, and solids in them.

@@ -1,6 +1,6 @@
 //! Which cells begin as particles.
 
-use sph_geometry::CellTree;
+use sph_geometry::{Cell, CellTree};
 
 /// Particles before they are packed.
 #[derive(Debug, Default)]
@@ -15,6 +15,19 @@ pub struct Seeds<const D: usize> {
 
 /// A spacing up to this share larger than the edge of a cell makes no difference.
 const SAME: f64 = 1e-6;
+
+/// Whether a cell has the spacing of its particles and so have those around it. Where spacings grow, one
+/// of them is the edge of its cell by chance.
+fn is_lattice<const D: usize>(tree: &CellTree<'_, D>, cell: &Cell<D>) -> bool {
+    let most = cell.edge * (1.0 + SAME);
+    let same = |k: usize, way: f64| {
+        let mut x = cell.center;
+        x[k] += way * cell.edge;
+        let spacing = tree.field().at(&x);
+        spacing <= most && spacing >= cell.edge * (1.0 - SAME)
+    };
+    cell.spacing <= most && (0..D).all(|k| same(k, 1.0) && same(k, -1.0))
+}
 
 /// Keeps so many of the cells with their middles at `position` as the spacing there asks for. `ends` are
 /// where regions end in them, and are kept up to date.
@@ -32,7 +45,7 @@ pub fn thinned<const D: usize>(
     for end in ends {
         for x in &position[start..*end] {
             let cell = tree.cell_at(x);
-            let fixed = cell.spacing <= cell.edge * (1.0 + SAME);
+            let fixed = is_lattice(tree, &cell);
             if !fixed {
                 seeds.loose_volume += cell.edge.powi(D as i32);
                 collected += (cell.edge / cell.spacing).powi(D as i32);
@@ -47,4 +60,39 @@ pub fn thinned<const D: usize>(
         *end = seeds.position.len();
     }
     seeds
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sph_geometry::{Aabb, Lattice, Refinement, Shape, SpacingField};
+
+    /// The spacing grows away from a line, so that rows of cells have their edge for spacing by chance.
+    #[test]
+    fn as_many_are_kept_as_the_spacing_asks_for() {
+        let target = Shape::cuboid([-9.0, -9.0], [9.0, 0.0]).unwrap();
+        let one = Refinement { target, spacing: 0.02, within: 0.0, growth: 1.05 };
+        let field = SpacingField::new(0.16, vec![one], [None; 2]);
+        let lattice = Lattice::new([0.0; 2], 0.16).unwrap();
+        let tree = CellTree::new(&lattice, &field).unwrap();
+        let mut cells = Vec::new();
+        let bounds = Aabb::new([0.0; 2], [3.2, 3.2]);
+        tree.for_each(&bounds, |cell| {
+            if bounds.contains(&cell.center) {
+                cells.push(cell.center);
+            }
+        })
+        .unwrap();
+        let mut ends = [cells.len()];
+        let seeds = thinned(&tree, &cells, &mut ends);
+        assert_eq!((seeds.position.len(), seeds.fixed.len()), (ends[0], ends[0]));
+        // Slices of a coarse cell across the growth.
+        for slice in 0..20 {
+            let (low, high) = (0.16 * f64::from(slice), 0.16 * f64::from(slice + 1));
+            let found = seeds.position.iter().filter(|x| low <= x[1] && x[1] < high).count() as f64;
+            let strips = (0..1000).map(|n| low + (f64::from(n) + 0.5) * 1.6e-4);
+            let expected: f64 = strips.map(|y| 3.2 * 1.6e-4 / field.at(&[1.0, y]).powi(2)).sum();
+            assert!((found / expected - 1.0).abs() < 0.12, "{slice}: {found} {expected}");
+        }
+    }
 }
