@@ -89,8 +89,8 @@ fn they_stay_finite_and_keep_the_momentum() {
             }
             let full = last.expect("the last step was asked for");
             assert!(full.position.iter().chain(&full.velocity).flatten().all(|x| x.is_finite()));
-            for k in 0..2 {
-                let change = momentum(&full.mass, &full.velocity, k) - before[k];
+            for (k, before) in before.iter().enumerate() {
+                let change = momentum(&full.mass, &full.velocity, k) - before;
                 assert!(change.abs() < 1e-12 * scale, "{apart} {shifts}: {change}");
             }
         }
