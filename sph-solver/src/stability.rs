@@ -10,6 +10,9 @@ const VISCOSITY_OF_SOUND: f64 = 1.1;
 /// Largest δ times Courant number: what limits the smoothing of the density alone.
 const DIFFUSION: f64 = 0.2;
 
+/// Largest Courant number in a collision, whatever the dissipation.
+const COLLISION: f64 = 1.2;
+
 /// How close to the limit of sound a run may come.
 const HEADROOM: f64 = 0.85;
 
@@ -25,13 +28,14 @@ const HEADROOM: f64 = 0.85;
 /// spacings of support, 3-D with 3): noise begins at x = 1.62, 1.53, 1.33 for δ = 0.05, 0.1, 0.2 and at
 /// 1.40, 0.95 for α = 0.3, 1; runs with δ = 0.3, 0.5, 1 diverge at δ x = 0.28 to 0.31. Two blocks that
 /// collide, compressed and disordered, are more demanding: with δ = 0.1 their noise is a hundredfold
-/// between x = 1.27 and 1.35, and δ = 0.2, 0.3, 0.5 diverge from δ x = 0.25 on.
+/// between x = 1.25 and 1.35, with δ = 0.05 and 0.2 from 1.25 on, and δ = 0.2, 0.3, 0.5 diverge from δ x = 0.25
+/// on. Hence the third limit. `benches/src/bin/courant.rs` measures them again.
 pub fn largest_courant(density_diffusion: f64, artificial_viscosity: f64) -> f64 {
     let damping =
         DIFFUSION_OF_SOUND * density_diffusion + VISCOSITY_OF_SOUND * artificial_viscosity;
     let sound = ((damping * damping + 4.0 * SOUND).sqrt() - damping) / SOUND;
     // A δ of 0 gives no limit.
-    (HEADROOM * sound).min(DIFFUSION / density_diffusion)
+    (HEADROOM * sound).min(DIFFUSION / density_diffusion).min(COLLISION)
 }
 
 #[cfg(test)]
@@ -41,11 +45,12 @@ mod tests {
 
     #[test]
     fn usual_values_are_not_limited_and_measured_failures_are() {
-        assert!(largest_courant(0.1, 0.02) > 1.2);
+        assert!(largest_courant(0.1, 0.02) >= 1.2);
         assert!(largest_courant(0.2, 0.0) >= 1.0);
         // What was seen to fail, as (δ, α, Courant number).
         for (delta, alpha, courant) in [
-            (0.1, 0.0, 1.35),
+            (0.05, 0.0, 1.25),
+            (0.1, 0.0, 1.3),
             (0.2, 0.0, 1.27),
             (0.3, 0.02, 0.9),
             (0.5, 0.02, 0.5),

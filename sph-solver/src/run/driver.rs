@@ -458,7 +458,9 @@ impl<const D: usize> Outputs<'_, D> {
             self.open = true;
             let way = if row.share > 0.0 { "more" } else { "less" };
             self.plan.notes.add(format!(
-                "at t = {time:.4} s the fluid has {:.1} % {way} energy than it had or was given and no                  term explains: beyond {:.0} % do not believe the results. Try a smaller                  numerics.cfl or spacing",
+                "at t = {time:.4} s the fluid has {:.1} % {way} energy than it had or was given and no term \
+                 explains: beyond {:.0} % do not believe the results. Try a smaller \
+                 numerics.cfl or spacing",
                 100.0 * row.share.abs(),
                 100.0 * LARGEST_RESIDUAL,
             ));

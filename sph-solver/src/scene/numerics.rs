@@ -25,7 +25,7 @@ pub struct Numerics {
     #[serde(default = "default_support")]
     pub support: At<f64>,
     /// Courant number: the time step is cfl · h/(c0 + |v|) at most. Where the density diffusion and the
-    /// artificial viscosity do not bear it, 1.27 with the usual ones, it is made smaller, and a note says
+    /// artificial viscosity do not bear it, 1.2 with the usual ones, it is made smaller, and a note says
     /// so. At most 1.7.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1.7))]
     #[serde(default = "default_cfl")]
