@@ -103,6 +103,7 @@ fn noise(flow: Flow, choice: Choice, cfl: f64) -> Result<Option<Noise>, Box<dyn 
     let model = Model {
         spacing: SPACING,
         support_radius: SUPPORT,
+        grading: None,
         skin: 0.15 * SUPPORT,
         gravity,
         equation_of_state,
@@ -112,7 +113,7 @@ fn noise(flow: Flow, choice: Choice, cfl: f64) -> Result<Option<Noise>, Box<dyn 
         lowest_pressure: f64::NEG_INFINITY,
         closed: false,
         on_lost: OnLost::Remove,
-        solids: vec![SolidModel { name: "tank".into(), center: [0.0; 2], slips: true }],
+        solids: vec![SolidModel { name: "tank".into(), center: [0.0; 2], slips: true, thin: None }],
     };
     let lattice = Lattice::new([0.0; 2], SPACING)?;
     let mut state = State::<2>::default();
