@@ -20,6 +20,7 @@ fn model() -> Model<2> {
     Model {
         spacing: SPACING,
         support_radius: SUPPORT,
+        grading: None,
         skin: 0.15 * SUPPORT,
         gravity: [0.0; 2],
         equation_of_state: EquationOfState::Linear { density0, sound_speed },
