@@ -10,6 +10,7 @@ mod stl_ascii;
 mod stl_binary;
 mod text;
 mod vtk;
+mod vtk_claims;
 
 use super::{MeshError, TriangleMesh};
 use soup::Soup;

@@ -2,12 +2,16 @@
 //! vtkio.
 
 use super::soup::Soup;
+use super::vtk_claims;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use vtkio::Vtk;
 use vtkio::model::{CellType, DataSet, IOBuffer, Piece, VertexNumbers};
 
 /// Adds the polygons and strips of a file.
 pub fn read(bytes: &[u8], xml: bool, soup: &mut Soup) -> Result<(), String> {
+    if xml {
+        vtk_claims::check(bytes).map_err(|error| format!("it is a broken VTK file: {error}"))?;
+    }
     // The parser was made for files of friends: on some broken ones it panics.
     let parsed = catch_unwind(AssertUnwindSafe(|| {
         if xml { Vtk::parse_xml(bytes) } else { Vtk::parse_legacy_be(bytes) }
