@@ -84,7 +84,9 @@ fn a_dam_break_in_space() {
 #[test]
 fn at_the_start() {
     let folder = tempfile::tempdir().unwrap();
-    let run = Run::new(write_scene(folder.path(), SMALL)).threads(1).checkpoint_every(0.01);
+    // So long that no machine is at the end when it is killed.
+    let run = Run::new(write_scene(folder.path(), SMALL)).threads(1).end_time(1.0);
+    let run = run.checkpoint_every(0.01);
     let undisturbed = Results::of(run.clone());
     for moment in moments(100).take(12) {
         let results = Results::new();
