@@ -35,7 +35,7 @@ impl Grading {
 /// The D-th root of a positive number, of operations alone that round the same way on every machine:
 /// the cube root of a library for mathematics does not.
 #[inline]
-fn root<const D: usize>(x: f64) -> f64 {
+pub fn root<const D: usize>(x: f64) -> f64 {
     match D {
         1 => x,
         2 => x.sqrt(),

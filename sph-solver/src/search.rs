@@ -47,18 +47,22 @@ impl<'a, const D: usize> Search<'a, D> {
 
     /// Halves of the support radii of elements of walls of these volumes (m^D) over the largest; nothing
     /// where all are the same.
-    pub fn halves_of_volumes(&self, volumes: &[f64]) -> impl Iterator<Item = f64> {
-        let density = self.model.equation_of_state.density0();
-        let grading = self.model.grading.into_iter();
-        grading.flat_map(move |grading| {
-            volumes.iter().map(move |volume| 0.5 * OF_WALLS * grading.ratio::<D>(density * volume))
-        })
+    pub fn halves_of_volumes(&self, volumes: &[f64]) -> Vec<f64> {
+        let half = |ratio: f64| 0.5 * ratio;
+        self.ratios_of_volumes(volumes).into_iter().flatten().map(half).collect()
     }
 
     /// [`reaches`](Self::reaches) of elements of walls of these volumes (m^D).
     pub fn reaches_of_volumes(&self, volumes: &[f64]) -> Option<Vec<f64>> {
-        let density = self.model.equation_of_state.density0();
-        self.reaches(volumes.iter().map(|volume| density * volume))
+        let Model { support_radius, skin, .. } = self.model;
+        let reach = |ratio: f64| support_radius * ratio + skin;
+        Some(self.ratios_of_volumes(volumes)?.map(reach).collect())
+    }
+
+    /// Support radii of elements of walls of these volumes (m^D) over the largest.
+    fn ratios_of_volumes(&self, volumes: &[f64]) -> Option<impl Iterator<Item = f64>> {
+        let (grading, density) = (self.model.grading?, self.model.equation_of_state.density0());
+        Some(volumes.iter().map(move |volume| OF_WALLS * grading.ratio::<D>(density * volume)))
     }
 }
 

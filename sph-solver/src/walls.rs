@@ -253,7 +253,7 @@ impl<const D: usize, S: Real> WallSet<D, S> {
         let set = Self {
             solid: own.solid.first().copied().unwrap_or(0),
             records: (0..own.len()).map(write).collect(),
-            halves: search.halves_of_volumes(&own.volume).map(S::from_f64).collect(),
+            halves: search.halves_of_volumes(&own.volume).into_iter().map(S::from_f64).collect(),
             near: ClusterList::default(),
             surface: match thin {
                 Some(ThinWall { spacing, .. }) => own.surface(spacing),

@@ -176,6 +176,7 @@ impl<const D: usize, S: Real + Pod> Pass<D, S> for ForcePass<'_, D, S> {
     }
 }
 
-fn square<const D: usize>(v: [f64; D]) -> f64 {
+/// |v|².
+pub fn square<const D: usize>(v: [f64; D]) -> f64 {
     v.iter().map(|c| c * c).sum()
 }

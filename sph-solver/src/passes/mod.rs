@@ -19,7 +19,7 @@ mod density;
 mod force;
 
 pub use density::{DENSEST, DensityPass};
-pub use force::{ForcePass, kicked};
+pub use force::{ForcePass, kicked, square};
 
 use crate::block::{Block, Targets};
 use crate::groups::{GroupSum, GroupView};

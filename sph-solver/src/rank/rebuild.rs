@@ -7,6 +7,7 @@ use super::{Rank, record_of};
 use crate::bodies::Bodies;
 use crate::error::RunError;
 use crate::model::Model;
+use crate::passes::square;
 use crate::records::Encoder;
 use crate::search::{Search, Seekers, Sorted};
 use crate::space::wrapped;
@@ -102,7 +103,7 @@ impl<const D: usize, S: Real + Pod> Rank<D, S> {
             (0..state.len() as u32).partition(|&i| outside(i as usize));
         let one = |&i: &u32| {
             let i = i as usize;
-            let (position, speed2) = (state.position[i], square(&state.velocity[i]));
+            let (position, speed2) = (state.position[i], square(state.velocity[i]));
             let stored = model.elastic_energy(state.density[i]) + model.potential_energy(&position);
             Gone { id: state.id[i], position, energy: state.mass[i] * (0.5 * speed2 + stored) }
         };
@@ -286,10 +287,6 @@ fn level_of_ratio(ratio: f64) -> usize {
         level += 1;
     }
     level as usize
-}
-
-fn square<const D: usize>(v: &[f64; D]) -> f64 {
-    v.iter().map(|c| c * c).sum()
 }
 
 /// Receives the state of the outer particles and sorts them: by cell, then by id.

@@ -3,6 +3,7 @@
 use super::bodies::bodies;
 use super::particles::Particles;
 use crate::eos::EquationOfState;
+use crate::grading::root;
 use crate::scene::{At, ErrorKind, Fluid, Formula, Place, Pressure, Region, Scene, SceneError};
 use sph_geometry::Lattice;
 use std::cell::LazyCell;
@@ -100,7 +101,7 @@ impl<const D: usize> Cells<'_, D> {
 
     /// Edge of its cell, m.
     fn edge(&self, i: usize) -> f64 {
-        self.volume.map_or(self.lattice.spacing(), |volume| volume[i].powf(1.0 / D as f64))
+        self.volume.map_or(self.lattice.spacing(), |volume| root::<D>(volume[i]))
     }
 }
 

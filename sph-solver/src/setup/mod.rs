@@ -110,7 +110,7 @@ impl<const D: usize> Setup<D> {
         let (filling, volume) = match &geometry.spacing {
             None => (Filling::new(scene, fluid, position, ends)?, None),
             Some(field) => {
-                let graded = graded::pack(scene, &geometry, field, &position, ends)?;
+                let graded = graded::pack(scene, &geometry, field, &position, &ends)?;
                 let GradedFluid { position, volume, ends } = graded;
                 (Filling::new(scene, fluid, position, ends)?, Some(volume))
             }

@@ -1,12 +1,15 @@
 //! Solids of a scene that move.
 
 use super::lattice_error;
+use super::thickness::Thin;
 use crate::bodies::{Body, Course, Free, Guide, Path, Rigid, Row, Spring, in_space};
 use crate::csv_file;
 use crate::scene::{self, At, Degree, ErrorKind, Motion, Place, Scene, SceneError, TimedFormula};
 use crate::walls::WallElements;
 use nalgebra::{Matrix3, Unit, Vector3};
-use sph_geometry::{Aabb, LatticeError, Solid, shape_mass_properties};
+use sph_geometry::{
+    Aabb, Lattice, LatticeError, Solid, body_elements, shape_mass_properties, thin_body_elements,
+};
 
 /// Moments at which the speed of a prescribed motion is looked at.
 const SAMPLES: usize = 1000;
@@ -38,6 +41,24 @@ pub fn bodies<const D: usize>(
         bodies.push(Body { solid: number as u16, guide, start, shape: shape.clone(), elements });
     }
     Ok(bodies)
+}
+
+/// The wall elements of a solid that moves, which may be among the `thin` ones.
+///
+/// # Errors
+///
+/// As [`body_elements`].
+pub fn elements<const D: usize>(
+    body: &Body<D>,
+    thin: &[Option<Thin<D>>],
+    lattice: &Lattice<D>,
+    support: f64,
+) -> Result<sph_geometry::WallElements<D>, LatticeError> {
+    let make = match thin[usize::from(body.solid)] {
+        Some(_) => thin_body_elements,
+        None => body_elements,
+    };
+    make(&body.shape, lattice, support)
 }
 
 /// Gives a solid that moves its wall elements, whose ids count from 0.

@@ -2,7 +2,6 @@
 
 use super::{Geometry, domain, fill, moving, nothing, overlap, thickness, walls};
 use crate::scene::{Scene, SceneError};
-use sph_geometry::{body_elements, thin_body_elements};
 
 /// Memory that reports on positions take per particle at their peak, bytes.
 pub const BYTES_PER_POSITION: f64 = 130.0;
@@ -38,9 +37,7 @@ impl<const D: usize> Positions<D> {
         let fluid = position.len();
         position.extend_from_slice(&walls.positions);
         for mut body in moving::bodies(scene, solids)? {
-            let thin = thin[usize::from(body.solid)].is_some();
-            let make = if thin { thin_body_elements } else { body_elements };
-            let elements = make(&body.shape, lattice, support);
+            let elements = moving::elements(&body, &thin, lattice, support);
             moving::add_elements(scene, &mut body, elements)?;
             position.extend_from_slice(&body.elements.position);
         }

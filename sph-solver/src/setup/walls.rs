@@ -9,8 +9,8 @@ use crate::bodies::Body;
 use crate::model::SolidModel;
 use crate::scene::{self, At, ErrorKind, Scene, SceneError};
 use sph_geometry::{
-    Aabb, Domain, FluidSide, Lattice, LatticeError, Solid, WallElements, body_elements, free_cells,
-    thin_body_elements, thin_wall_elements, wall_elements, wall_particles,
+    Aabb, Domain, FluidSide, Lattice, LatticeError, Solid, SpacingField, WallElements, free_cells,
+    graded_wall_elements, thin_wall_elements, wall_elements, wall_particles,
 };
 
 /// More rows of lattice cells than this are not searched; a domain that large is a mistake.
@@ -110,14 +110,11 @@ pub fn add_walls<const D: usize>(
     let support = constants.support_radius;
     let walls = match &geometry.spacing {
         None => find_walls(scene, solids, thin, &geometry.lattice, &geometry.domain, support)?,
-        Some(field) => graded::find_walls(scene, geometry, field)?,
+        Some(field) => find_graded_walls(scene, geometry, field)?,
     };
     for body in &mut *bodies {
         let elements = match &geometry.spacing {
-            None if thin[usize::from(body.solid)].is_some() => {
-                thin_body_elements(&body.shape, &geometry.lattice, support)
-            }
-            None => body_elements(&body.shape, &geometry.lattice, support),
+            None => moving::elements(body, thin, &geometry.lattice, support),
             Some(field) => graded::body_elements(scene, geometry, field, body),
         };
         moving::add_elements(scene, body, elements)?;
@@ -169,53 +166,66 @@ pub fn find_walls<const D: usize>(
     bounds: &Aabb<D>,
     support: f64,
 ) -> Result<WallElements<D>, SceneError> {
-    let moves = moving::moves(scene);
-    let at_rest = (0..solids.len()).filter(|&number| !moves[number]);
-    let (thin, thick): (Vec<usize>, Vec<usize>) = at_rest.partition(|&k| thin[k].is_some());
+    let (thin, thick): (Vec<usize>, Vec<usize>) =
+        numbers_at_rest(scene).into_iter().partition(|&k| thin[k].is_some());
     if thin.is_empty() && thick.is_empty() {
         return Ok(WallElements::default());
     }
     let (domain, place) = searchable(scene, lattice, bounds)?;
-    let of = |numbers: &[usize]| numbers.iter().map(|&k| solids[k].clone()).collect::<Vec<_>>();
-    let numbered = |mut walls: WallElements<D>, numbers: &[usize]| {
-        walls.solids.iter_mut().for_each(|solid| *solid = numbers[*solid as usize] as u32);
-        walls
-    };
     let refuse = |error| lattice_error(scene, place, &error);
-    let (few, rest) = (of(&thin), of(&thick));
     let mut walls = WallElements::default();
-    if !rest.is_empty() {
-        walls = numbered(wall_elements(&rest, lattice, support, &domain).map_err(refuse)?, &thick);
+    if !thick.is_empty() {
+        let make = |rest: &[Solid<D>]| wall_elements(rest, lattice, support, &domain);
+        walls = of_some(solids, &thick, make).map_err(refuse)?;
     }
-    if !few.is_empty() {
-        let sides = thin_wall_elements(&few, &rest, lattice, support, &domain).map_err(refuse)?;
-        walls.append(numbered(sides, &thin));
+    if !thin.is_empty() {
+        let rest = some(solids, &thick);
+        let make = |few: &[Solid<D>]| thin_wall_elements(few, &rest, lattice, support, &domain);
+        walls.append(of_some(solids, &thin, make).map_err(refuse)?);
     }
     Ok(walls)
 }
 
-/// The wall elements that `make` makes of the solids at rest in the domain.
+/// The wall elements of solids at rest in cells that match the spacing.
 ///
 /// # Errors
 ///
-/// When the domain is too large to be searched.
-pub fn find_with<const D: usize>(
+/// As [`find_walls`].
+pub fn find_graded_walls<const D: usize>(
     scene: &Scene,
-    solids: &[Solid<D>],
-    lattice: &Lattice<D>,
-    bounds: &Aabb<D>,
-    make: impl FnOnce(&[Solid<D>], &Domain<D>) -> Result<WallElements<D>, LatticeError>,
+    geometry: &Geometry<D>,
+    field: &SpacingField<D>,
 ) -> Result<WallElements<D>, SceneError> {
-    let at_rest = moving::at_rest(scene, solids);
-    if at_rest.is_empty() {
+    let numbers = numbers_at_rest(scene);
+    if numbers.is_empty() {
         return Ok(WallElements::default());
     }
-    let (domain, place) = searchable(scene, lattice, bounds)?;
-    let mut walls = make(&at_rest, &domain).map_err(|error| lattice_error(scene, place, &error))?;
+    let tree = graded::tree(scene, geometry, field)?;
+    let (domain, place) = searchable(scene, &geometry.lattice, &geometry.domain)?;
+    let supports = *scene.numerics.support;
+    let make = |solids: &[Solid<D>]| graded_wall_elements(solids, &tree, supports, &domain);
+    of_some(&geometry.solids, &numbers, make).map_err(|error| lattice_error(scene, place, &error))
+}
+
+/// Numbers in the scene of the solids that rest.
+fn numbers_at_rest(scene: &Scene) -> Vec<usize> {
     let moves = moving::moves(scene);
-    let numbers: Vec<u32> =
-        (0..moves.len() as u32).filter(|number| !moves[*number as usize]).collect();
-    walls.solids.iter_mut().for_each(|solid| *solid = numbers[*solid as usize]);
+    (0..moves.len()).filter(|&number| !moves[number]).collect()
+}
+
+/// The solids with these numbers.
+fn some<const D: usize>(solids: &[Solid<D>], numbers: &[usize]) -> Vec<Solid<D>> {
+    numbers.iter().map(|&number| solids[number].clone()).collect()
+}
+
+/// The wall elements that `make` makes of the solids with these numbers, which it does not know.
+fn of_some<const D: usize>(
+    solids: &[Solid<D>],
+    numbers: &[usize],
+    make: impl FnOnce(&[Solid<D>]) -> Result<WallElements<D>, LatticeError>,
+) -> Result<WallElements<D>, LatticeError> {
+    let mut walls = make(&some(solids, numbers))?;
+    walls.solids.iter_mut().for_each(|solid| *solid = numbers[*solid as usize] as u32);
     Ok(walls)
 }
 

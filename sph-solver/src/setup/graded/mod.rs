@@ -9,7 +9,7 @@ mod packing;
 mod seeds;
 
 use super::shapes::Shapes;
-use super::{Geometry, lattice_error, walls};
+use super::{Geometry, lattice_error};
 use crate::bodies::Body;
 use crate::scene::{Scene, SceneError};
 use sph_geometry::{
@@ -72,10 +72,10 @@ pub fn pack<const D: usize>(
     geometry: &Geometry<D>,
     field: &SpacingField<D>,
     position: &[[f64; D]],
-    mut ends: Vec<usize>,
+    ends: &[usize],
 ) -> Result<GradedFluid<D>, SceneError> {
     let tree = tree(scene, geometry, field)?;
-    let seeds = seeds::thinned(&tree, position, &mut ends);
+    let seeds = seeds::thinned(&tree, position, ends);
     let place = scene.numerics.spacing.place;
     let supports = *scene.numerics.support;
     // What is not fluid: everything outside of the regions, and solids in them.
@@ -97,8 +97,7 @@ pub fn pack<const D: usize>(
         }
         Err(_) => WallElements::default(),
     };
-    let packed = packing::packed(scene, geometry, field, seeds, &around)?;
-    Ok(GradedFluid { position: packed.position, volume: packed.volume, ends })
+    packing::packed(scene, geometry, field, seeds, &around)
 }
 
 /// The middles of the cells in the regions, region by region, and where the regions end.
@@ -141,26 +140,6 @@ pub fn tree<'a, const D: usize>(
 ) -> Result<CellTree<'a, D>, SceneError> {
     CellTree::new(&geometry.lattice, field)
         .map_err(|error| lattice_error(scene, scene.numerics.spacing.place, &error))
-}
-
-/// The wall elements of solids at rest in cells that match the spacing.
-///
-/// # Errors
-///
-/// As [`walls::find_walls`].
-pub fn find_walls<const D: usize>(
-    scene: &Scene,
-    geometry: &Geometry<D>,
-    field: &SpacingField<D>,
-) -> Result<WallElements<D>, SceneError> {
-    let tree = tree(scene, geometry, field)?;
-    walls::find_with(
-        scene,
-        &geometry.solids,
-        &geometry.lattice,
-        &geometry.domain,
-        |solids, domain| graded_wall_elements(solids, &tree, *scene.numerics.support, domain),
-    )
 }
 
 /// The wall elements of a solid that moves, in cells as fine as the finest particles near it at the

@@ -9,6 +9,8 @@ pub struct Seeds<const D: usize> {
     pub position: Vec<[f64; D]>,
     /// Whether they are points of a lattice and stay where they are.
     pub fixed: Vec<bool>,
+    /// Where the regions end in them.
+    pub ends: Vec<usize>,
     /// Volume of the cells that are not kept as they are, m^D: what the particles that are not fixed fill.
     pub loose_volume: f64,
 }
@@ -30,20 +32,20 @@ fn is_lattice<const D: usize>(tree: &CellTree<'_, D>, cell: &Cell<D>) -> bool {
 }
 
 /// Keeps so many of the cells with their middles at `position` as the spacing there asks for. `ends` are
-/// where regions end in them, and are kept up to date.
+/// where regions end in them.
 ///
 /// Cells come in an order in which neighbours mostly follow each other. Each is worth (edge/spacing)^D of
 /// a particle, and one is kept whenever a whole particle has come together.
 pub fn thinned<const D: usize>(
     tree: &CellTree<'_, D>,
     position: &[[f64; D]],
-    ends: &mut [usize],
+    ends: &[usize],
 ) -> Seeds<D> {
     let mut seeds = Seeds::default();
     let mut collected = 0.5;
     let mut start = 0;
-    for end in ends {
-        for x in &position[start..*end] {
+    for &end in ends {
+        for x in &position[start..end] {
             let cell = tree.cell_at(x);
             let fixed = is_lattice(tree, &cell);
             if !fixed {
@@ -56,8 +58,8 @@ pub fn thinned<const D: usize>(
                 seeds.fixed.push(fixed);
             }
         }
-        start = *end;
-        *end = seeds.position.len();
+        start = end;
+        seeds.ends.push(seeds.position.len());
     }
     seeds
 }
@@ -83,9 +85,9 @@ mod tests {
             }
         })
         .unwrap();
-        let mut ends = [cells.len()];
-        let seeds = thinned(&tree, &cells, &mut ends);
-        assert_eq!((seeds.position.len(), seeds.fixed.len()), (ends[0], ends[0]));
+        let seeds = thinned(&tree, &cells, &[cells.len()]);
+        let count = seeds.position.len();
+        assert_eq!((seeds.fixed.len(), &seeds.ends[..]), (count, &[count][..]));
         // Slices of a coarse cell across the growth.
         for slice in 0..20 {
             let (low, high) = (0.16 * f64::from(slice), 0.16 * f64::from(slice + 1));
